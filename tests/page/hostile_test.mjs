@@ -68,7 +68,7 @@ test('problems, optimizers and folders with hostile names', async () => {
 
 // Words that the page's code compares with, and commands of ours: all other texts may be anything.
 const kWords =
-  /^(run|study|reproduction|generation|evaluations|box|cylinder|sphere|mesh|revolute|prismatic|ok|diverged|upper|lower|fresh:\d+|fixed:\d+|)$/;
+  /^(run|study|reproduction|generation|evaluations|box|cylinder|sphere|mesh|revolute|prismatic|ok|diverged|upper|lower|good|watch|bad|fresh:\d+|fixed:\d+|)$/;
 const kKept = new Set(['f32', 'i16', 'u32', 'id', 'design', 'replay', 'case', 'label', 'set', 'used']);
 
 function spoil(value, key, next) {

@@ -43,6 +43,47 @@ test('every tab of a run has its figures', async () => {
   await page.close();
 });
 
+test('the first screen of a run has its headlines and the health of the winner', async () => {
+  const result = JSON.parse(readFileSync(join(kFolder, 'run', 'result.json'), 'utf8'));
+  const { test: judged } = result.winner;
+  const get_metric = (name) => judged.metrics[result.metrics.indexOf(name)];
+  const { page, expect_no_faults } = await open_run();
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await open_tab(page, 'overview');
+  const tile = async (label) =>
+    page
+      .locator('.tile', { has: page.getByText(label, { exact: true }) })
+      .locator('.tile-value')
+      .innerText();
+  const mean_mm = (1000 * judged.case_errors.reduce((sum, error) => sum + error, 0)) / judged.case_errors.length;
+  const [, before, after] = /^([\d.]+) → ([\d.]+) mm$/.exec(await tile('Mean error'));
+  assert.equal(after, mean_mm.toPrecision(3));
+  assert.ok(Number(before) > Number(after), `${before} before, ${after} after`);
+  assert.match(await tile('Failed test cases'), new RegExp(` ${judged.failed_cases} of ${judged.case_errors.length}$`));
+  assert.equal(await tile('Total torque'), `${Math.round(get_metric('total_torque'))} N m`);
+  assert.equal(await tile('Simulations'), String(result.counts.cases));
+  const { started } = JSON.parse(readFileSync(join(kFolder, 'run', 'manifest.json'), 'utf8'));
+  assert.equal(await tile('Started'), started.slice(0, 10));
+
+  const card = page.locator('[data-figure=health]');
+  assert.match(await card.locator('.verdict').innerText(), /The winner is/);
+  const box = await card.boundingBox();
+  assert.ok(box.y + box.height <= 800, `the card ends at ${box.y + box.height}`);
+  // The recorded metric is the mean over joints and test cases. The shares have two digits.
+  const saturation = await card.locator('tr', { hasText: 'Saturation' }).locator('td').nth(1).innerText();
+  const shares = Array.from(saturation.matchAll(/joint_\d ([\d.e-]+) %/g), (match) => Number(match[1]));
+  assert.equal(shares.length, 4);
+  const mean = shares.reduce((sum, share) => sum + share, 0) / shares.length;
+  const expected = 100 * get_metric('saturated_share');
+  assert.ok(Math.abs(mean - expected) <= 0.05 * expected, `${mean} % is not ${expected} %`);
+  assert.equal(await card.locator('tr .mark').count(), 7);
+  for (const mark of await card.locator('tr .mark').allInnerTexts()) {
+    assert.match(mark, /^(✓ good|! watch|✗ bad|– not graded)$/);
+  }
+  expect_no_faults();
+  await page.close();
+});
+
 test('a run of several objectives and one of a function have pages, too', async () => {
   for (const name of ['front', 'function']) {
     const { page, expect_no_faults } = await open_run(name);
@@ -201,7 +242,7 @@ test('a table sorts by a column, up and down, by key too', async () => {
   const { page, expect_no_faults } = await open_run();
   await open_tab(page, 'design');
   const card = await find_figure(page, 'design-table');
-  const column = 4; // the winner's
+  const column = 2; // the winner's
   const read = async () =>
     (await card.locator(`tbody tr td:nth-child(${column + 1})`).evaluateAll((cells) => cells.map((cell) => Number(cell.title)))).filter(
       (value) => !Number.isNaN(value),

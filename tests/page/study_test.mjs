@@ -37,12 +37,44 @@ test('every tab of a comparison has its figures', async () => {
   await page.close();
 });
 
-test('the verdict is on top, word for word as in its file', async () => {
+test('the headline and the whole grid are on the first screen', async () => {
   const { page, expect_no_faults } = await open_study();
-  const shown = await page.locator('main').innerText();
+  await page.setViewportSize({ width: 1280, height: 800 });
+  const cards = await page.$$eval('main .card', (all) => all.map((card) => card.dataset.figure));
+  assert.deepEqual(cards.slice(0, 3), ['headline', 'standing', 'verdict']);
+  // Six replicates cannot decide between four optimizers.
+  const headline = await page.locator('[data-figure=headline] p').allInnerTexts();
+  assert.deepEqual(headline, ['No pair of optimizers can be decided on any of the 2 problems with 6 replicates; at least 8 are needed.']);
+  const plot = page.locator('[data-figure=standing] .plot');
+  await plot.locator('svg').waitFor();
+  const box = await plot.boundingBox();
+  assert.ok(box.y + box.height < 800, `the grid ends at ${box.y + box.height}`);
+  const texts = await plot.locator('svg text').allTextContents();
+  for (const text of ['cmaes', 'ga', 'nlopt:bobyqa', 'random', 'q1-complex', 'q2-e6', 'no verdict']) {
+    assert.ok(texts.includes(text), `${text} is not among ${texts.join(', ')}`);
+  }
+  expect_no_faults();
+  await page.close();
+});
+
+test('the verdict is folded away, and opened it is word for word as in its file', async () => {
+  const { page, expect_no_faults } = await open_study();
+  const folded = page.locator('[data-figure=verdict] details');
+  assert.equal(await folded.locator('p').first().isVisible(), false);
+  await folded.locator('summary').click();
+  const shown = await folded.locator('p').allInnerTexts();
   const verdict = readFileSync(join(kFolder, 'study/verdict.txt'), 'utf8');
-  const first = verdict.split('\n').filter((line) => line.trim() !== '')[0];
-  assert.ok(shown.replace(/\s+/g, ' ').includes(first.trim().slice(0, 60)), shown.slice(0, 400));
+  assert.equal(shown.join(' ').replace(/\s+/g, ' ').trim(), verdict.replace(/\s+/g, ' ').trim());
+  expect_no_faults();
+  await page.close();
+});
+
+test('a printed page shows the folded verdict', async () => {
+  const { page, expect_no_faults } = await open_study();
+  await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
+  assert.equal(await page.locator('[data-figure=verdict] p').first().isVisible(), true);
+  await page.evaluate(() => window.dispatchEvent(new Event('afterprint')));
+  assert.equal(await page.locator('[data-figure=verdict] p').first().isVisible(), false);
   expect_no_faults();
   await page.close();
 });

@@ -217,7 +217,20 @@ export interface RunData extends PageBase {
   test: TestErrors | null; // null before the run has ended
   front: RunFront | null; // null if there is only one objective
   requirements: RequirementLight[]; // for the winner on the test set; empty without a winner
+  headline: Headline;
   arm: ArmEvidence | null; // null if the problem is not an arm
+}
+
+// What the run recorded of its result and effort. The fields after `cases` are null without a winner.
+export interface Headline {
+  started: string; // "2026-01-31T12:00:00Z", or "" if it is not recorded
+  evaluations: number; // of training
+  cases: number; // simulated in training
+  value: number | null; // the winner's on the test set: an arm's mean error, or the objective
+  quantity: Quantity | null; // of `value`
+  failures: number | null; // test cases that an arm failed
+  test_cases: number | null;
+  total_torque_n_m: number | null;
 }
 
 // A quantity that must not exceed a limit on any test case, and the result.
@@ -309,6 +322,55 @@ export interface ArmEvidence {
   response: DistanceResponse;
   signals: Signals;
   sweep: Sweep | null;
+  health: Health | null; // null without a winner and if nothing was simulated
+}
+
+// "watch" is worth a look, "bad" needs a remedy.
+export type HealthGrade = 'good' | 'watch' | 'bad';
+
+// How calmly the winner moves. src/report/evidence/health.hpp defines the measures. Saturation and
+// failures are those of the whole test set; ripple, efforts and moves are those of one case.
+export interface Health {
+  set: string;
+  cases: number; // of the set
+  case: string; // "test/2:17": the median case by the winner's error
+  failures: number;
+  failing: HealthGrade;
+  ripple_floor_hz: number; // only faster oscillations count
+  // The shares from which "watch" and "bad" begin, and the distance to a bound up to which a variable
+  // is near.
+  limits: { saturation: [number, number]; ripple: [number, number]; bound: number };
+  joints: JointHealth[];
+  moves: MoveHealth | null; // null if the case has no moves
+  bounds: {
+    grade: HealthGrade;
+    near: number; // variables near a bound
+    nearest: { name: string; bound: 'lower' | 'upper'; distance: number }[]; // the near ones or the nearest one; shares of the range
+  };
+}
+
+// A measure that cannot be computed is null, and so is its grade.
+export interface JointHealth {
+  name: string;
+  unit: string; // of efforts
+  saturated_share: number | null; // of the time
+  saturation: HealthGrade | null;
+  ripple_rms: number | null;
+  ripple_share: number | null; // of the larger effort limit
+  ripple_hz: number | null; // the dominant frequency
+  ripple: HealthGrade | null;
+  used_share: number | null; // the largest effort, as a share of the limit on its side
+}
+
+// The response of the tip to the moves that count (src/sim/tracking/response.hpp).
+export interface MoveHealth {
+  count: number;
+  overshoot_median: number; // shares of the move
+  overshoot_largest: number;
+  settling_median_s: number;
+  settling_largest_s: number;
+  settling_band: number; // share of the move
+  unsettled: number; // moves that end before the tip stays in the band; their time is the whole time after the arrival
 }
 
 // ---------------------------------------------------------------- a comparison
@@ -318,6 +380,7 @@ export interface StudyData extends PageBase {
   verdict: string[]; // paragraphs
   optimizers: { label: string; name: string }[]; // in the order of the plan; all lists with one item per optimizer have this order
   replicates: number;
+  fewest_replicates: number | null; // with fewer no pair of optimizers can be decided on a problem; null if there is no pair
   budget: number;
   reference: string; // times to fixed targets are divided by those of this optimizer; may be empty
   problems: StudyProblem[];
@@ -350,6 +413,7 @@ export interface StudyOptimizerResult {
   max: number | null;
   median_interval: [number | null, number | null];
   mean_rank: number | null; // null while cells of the problem are missing
+  median_rank: number | null; // of the median; equal medians share their ranks; null while cells are missing
   anytime_area: number | null;
   cases: number | null; // median
   running_times: { target: number; reached: number; expected: number | null; interval: [number | null, number | null] }[];

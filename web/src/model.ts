@@ -72,6 +72,7 @@ export interface TextItem {
   id: string;
   title: string;
   paragraphs: string[];
+  style?: 'headline' | 'folded'; // larger letters; or closed until the reader opens it or prints the page
 }
 
 export interface FactsItem {
@@ -88,7 +89,35 @@ export interface ReplayItem {
   sets: ReplaySet[];
 }
 
-export type Item = Figure | TableItem | TextItem | FactsItem | ReplayItem;
+// A number that a reader looks for first.
+export interface Tile {
+  label: string;
+  value: string;
+  detail: string; // may be empty
+  mark?: Cell['mark'];
+}
+
+// One line of a card of grades. A sign and a word repeat the meaning of the colour.
+export interface GradeLine {
+  name: string;
+  state: string; // "✓ good"
+  mark: NonNullable<Cell['mark']>;
+  value: string;
+  meaning: string; // empty if the line is good
+}
+
+// Tiles, or a verdict and the lines that it rests on.
+export interface SummaryItem {
+  kind: 'summary';
+  id: string;
+  title: string; // may be empty
+  verdict?: { text: string; mark: NonNullable<Cell['mark']> };
+  tiles: Tile[];
+  lines: GradeLine[];
+  caption?: string;
+}
+
+export type Item = Figure | TableItem | TextItem | FactsItem | ReplayItem | SummaryItem;
 
 export interface Tab {
   id: string;

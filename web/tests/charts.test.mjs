@@ -3,9 +3,13 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { load } from './load.mjs';
 
-const { decimate, shorten, shorten_all } = await load(`
+const { decimate, fit_width, kLight, kNarrow_px, make_axis, make_chart, make_panels, shorten, shorten_all } = await load(`
   export { decimate } from './src/charts/decimate';
+  export { kLight } from './src/charts/look';
+  export { make_panels } from './src/charts/marks';
   export { shorten, shorten_all } from './src/charts/names';
+  export { fit_width, kNarrow_px } from './src/charts/narrow';
+  export { make_axis, make_chart } from './src/charts/parts';
 `);
 
 test('decimation keeps both ends and every extreme', () => {
@@ -45,4 +49,58 @@ test('names beside each other stay different', () => {
   const names = shorten_all([long + '1', long + '2', '', '']);
   assert.equal(new Set(names).size, 4);
   names.forEach((name) => assert.ok(name.length > 0 && name.length <= 40, name));
+});
+
+const make_axes = (count) => Array.from({ length: count }, (_, i) => make_axis(kLight, 'x', 'time (s)', { index: i }));
+
+test('a wide chart stays as it is', () => {
+  const option = make_chart(kLight, make_axes(1), make_axes(1), [{ name: 'a' }, { name: 'b' }]);
+  assert.deepEqual(fit_width(option, kNarrow_px, 340), { option, height_px: 340 });
+});
+
+test('in a narrow chart the legend is above the curves, which keep their height', () => {
+  const beside = { type: 'scroll', orient: 'vertical', right: 6, top: 14, bottom: 14, data: ['a', 'b'], textStyle: { fontSize: 11 } };
+  const drawn = make_chart(kLight, make_axes(1), make_axes(1), [], { grid: { left: 68, right: 216, top: 20, bottom: 48 }, legend: beside });
+  const { option, height_px } = fit_width(drawn, 330, 340);
+  assert.equal(option.legend.orient, 'horizontal');
+  assert.equal(option.legend.type, 'plain');
+  assert.ok(option.grid.left + option.grid.right < 100, JSON.stringify(option.grid));
+  assert.ok(option.grid.top > 40);
+  assert.equal(height_px - option.grid.top - option.grid.bottom, 340 - 20 - 48);
+});
+
+test('each row of a legend makes a narrow chart higher, and a very long legend keeps its pages', () => {
+  const draw = (count) => {
+    const names = Array.from({ length: count }, (_, i) => `optimizer ${i}`);
+    return fit_width(
+      make_chart(
+        kLight,
+        make_axes(1),
+        make_axes(1),
+        names.map((name) => ({ name })),
+      ),
+      330,
+      340,
+    );
+  };
+  assert.ok(draw(12).height_px > draw(6).height_px);
+  assert.equal(draw(12).option.legend.type, 'plain');
+  assert.equal(draw(40).option.legend.type, 'scroll');
+  assert.ok(draw(40).height_px < 400);
+});
+
+test('panels of a narrow chart stand below each other', () => {
+  const grid = make_panels(6, 3, 480);
+  const title = grid.map((one, i) => ({ text: `panel ${i}`, left: one.left, top: one.top }));
+  const { option, height_px } = fit_width(make_chart(kLight, make_axes(6), make_axes(6), [], { grid, title }), 330, 480);
+  option.grid.slice(1).forEach((one, i) => {
+    assert.equal(one.left, option.grid[i].left);
+    assert.ok(one.top > option.grid[i].top + option.grid[i].height);
+    assert.equal(option.title[i + 1].top, one.top);
+  });
+  assert.ok(height_px > option.grid[5].top + option.grid[5].height);
+  assert.deepEqual(
+    option.xAxis.map((axis) => axis.name !== ''),
+    [false, false, false, false, false, true],
+  );
 });

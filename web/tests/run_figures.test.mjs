@@ -170,6 +170,7 @@ test('what is missing is left out', () => {
   assert.ok(!check({ ...data, front: null }).includes('front'));
   assert.ok(!check({ ...data, arm: { ...data.arm, sweep: null } }).includes('speed-sweep'));
   assert.ok(!check({ ...data, replays: [] }).includes('replay'));
+  assert.ok(!check({ ...data, arm: { ...data.arm, health: null } }).includes('health'));
   const { training } = data;
   const empty = { index: [], cases: [], best: [], mean: [], worst: [], failed: [] };
   const no_incumbents = { ...training.incumbents, index: [], cases: [], training: [], test: [] };
@@ -184,7 +185,7 @@ test('what is missing is left out', () => {
     variables: [],
     training: { ...training, ...empty, incumbents: no_incumbents },
   });
-  assert.deepEqual(ids, []);
+  assert.deepEqual(ids, ['tiles']);
   assert.ok(check({ ...data, training: { ...training, incumbents: no_incumbents } }).includes('fitness'));
   // A generation of which nothing had a number.
   const nothing = training.best.map(() => null);
@@ -279,4 +280,97 @@ test('stretches at a limit begin and end where the torque does', () => {
     ],
   );
   assert.deepEqual(find_saturated(set, effort, [-1000, 800]), []);
+});
+
+const get_tile = (data, label) => find(data, 'tiles').tiles.find((tile) => tile.label === label);
+const get_line = (item, start) => item.lines.find((line) => line.name.startsWith(start));
+
+test('the tiles have the result of the run and its effort', () => {
+  const data = make_run_data();
+  assert.deepEqual(
+    find(data, 'tiles').tiles.map((tile) => `${tile.label}: ${tile.value}`),
+    ['Mean error: 50 → 6.10 mm', 'Failed test cases: ✓ 0 of 500', 'Total torque: 930000 N m', 'Simulations: 2800', 'Started: 2026-01-31'],
+  );
+  const error = get_tile(data, 'Mean error');
+  assert.equal(error.detail, 'better by a factor of 8.20: base controllers → winner, on 500 cases of test/2');
+  data.headline.value = 0.1;
+  assert.match(get_tile(data, 'Mean error').detail, /^worse by a factor of 2: /);
+  data.headline.value = 0.05001;
+  assert.match(get_tile(data, 'Mean error').detail, /^unchanged: /);
+  data.headline.failures = 3;
+  assert.deepEqual(
+    { ...get_tile(data, 'Failed test cases'), detail: '' },
+    { label: 'Failed test cases', value: '✗ 3 of 500', detail: '', mark: 'bad' },
+  );
+});
+
+test('tiles without a record are left out', () => {
+  const data = make_run_data();
+  data.arm = null;
+  data.headline = {
+    ...data.headline,
+    started: '',
+    value: 3.25e-7,
+    quantity: { name: 'f', unit: '1' },
+    failures: null,
+    test_cases: null,
+    total_torque_n_m: null,
+  };
+  const list = () => find(data, 'tiles').tiles.map((tile) => `${tile.label}: ${tile.value}`);
+  assert.deepEqual(list(), ['f: 3.25e-7', 'Evaluated cases: 2800']);
+  assert.ok(!get_items(data).some((item) => item.id === 'health'));
+  data.headline.value = null;
+  assert.deepEqual(list(), ['Evaluated cases: 2800']);
+});
+
+test('the health card says in words what is not healthy', () => {
+  const data = make_run_data();
+  const card = find(data, 'health');
+  assert.equal(
+    card.verdict.text,
+    '✗ The winner is not healthy: joint_2 is at an effort limit 12 % of the time. ' +
+      'Watch: the effort of joint_3 oscillates by 7.0 % of its limit; 1 variable is near a bound.',
+  );
+  assert.equal(card.verdict.mark, 'bad');
+  const saturation = get_line(card, 'Saturation');
+  assert.equal(saturation.state, '✗ bad');
+  assert.equal(saturation.value, 'joint_1 0 %, joint_2 12 %, joint_3 0.40 %, joint_4 0.60 %');
+  assert.match(saturation.meaning, /Raise the limit/);
+  const ripple = get_line(card, 'Oscillation above 10 Hz');
+  assert.equal(ripple.state, '! watch');
+  assert.match(ripple.value, /joint_3 7(\.0)? % at 25 Hz/);
+  assert.equal(get_line(card, 'Variables').value, 'joint_1.d 0.40 % from its upper bound');
+  assert.equal(get_line(card, 'Margin').value, 'joint_1 40 %, joint_2 0 %, joint_3 40 %, joint_4 40 %');
+  assert.match(get_line(card, 'Overshoot').value, /median 1\.1 %, largest 31 %/);
+  assert.match(get_line(card, 'Settling').value, /median 0\.12 s, longest 0\.50 s; 3 of 24 moves/);
+  assert.match(card.caption, /test\/2:17, the median case/);
+  data.arm.health.joints[0].saturation = 'bad';
+  assert.match(find(data, 'health').verdict.text, /: joint_1 and joint_2 are at an effort limit up to 12 % of the time\./);
+  assert.match(card.caption, /1 and 5 % of the time .* RMS of 5 and 20 % of the effort limit/);
+});
+
+test('the health card of a healthy winner, and of one that was not measured', () => {
+  const data = make_run_data();
+  const { health } = data.arm;
+  health.joints.forEach((joint) => Object.assign(joint, { saturation: 'good', ripple: 'good' }));
+  health.bounds = { grade: 'good', near: 0, nearest: [{ name: 'joint_4.p', bound: 'lower', distance: 0.21 }] };
+  let card = find(data, 'health');
+  assert.deepEqual(card.verdict, { text: '✓ The winner is healthy.', mark: 'good' });
+  assert.ok(card.lines.every((line) => line.meaning === ''));
+  assert.equal(get_line(card, 'Variables').value, 'none; the nearest is joint_4.p 21 % from its lower bound');
+  health.bounds.grade = 'watch';
+  health.bounds.near = 2;
+  assert.deepEqual(find(data, 'health').verdict, {
+    text: '! Nothing about the winner is bad, but watch: 2 variables are near a bound.',
+    mark: 'near',
+  });
+  health.bounds.grade = 'good';
+  health.joints.forEach((joint) => Object.assign(joint, { ripple: null, ripple_share: null, ripple_rms: null, ripple_hz: null }));
+  health.moves = null;
+  card = find(data, 'health');
+  assert.match(card.verdict.text, /^✓ The winner is healthy as far as it was measured\. Not measured: Oscillation/);
+  assert.equal(get_line(card, 'Overshoot').state, '? not measured');
+  health.failing = 'bad';
+  health.failures = 2;
+  assert.match(find(data, 'health').verdict.text, /^✗ The winner is not healthy: 2 of 500 test cases failed\. Not measured/);
 });

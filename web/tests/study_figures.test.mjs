@@ -76,7 +76,18 @@ test('a single problem has all figures, and every one draws', () => {
   );
   assert.deepEqual(
     get_figures(tabs).map((figure) => figure.id),
-    ['ranks', 'convergence', 'values', 'runtime-ecdf', 'cost-quality', 'pairs', 'data-profile', 'performance-profile', 'parallel'],
+    [
+      'standing',
+      'ranks',
+      'convergence',
+      'values',
+      'runtime-ecdf',
+      'cost-quality',
+      'pairs',
+      'data-profile',
+      'performance-profile',
+      'parallel',
+    ],
   );
   for (const id of ['ranking', 'running-times', 'pairs-table', 'cells']) {
     assert.equal(find(tabs, id).kind, 'table');
@@ -100,19 +111,83 @@ test('several problems have a tab each, many a choice', () => {
   check_tabs(many);
 });
 
-test('forty optimizers with fifteen replicates draw, the best eight at first', () => {
+test('forty optimizers with fifteen replicates draw, the best twelve at first', () => {
   const tabs = study.make_study_tabs(study.make_study_data({ optimizers: 40, replicates: 15, problems: 1 }));
   check_tabs(tabs);
-  const option = find(tabs, 'convergence').draw(study.kLight, {});
-  assert.equal(option.legend.data.length, 40);
-  assert.equal(Object.values(option.legend.selected).filter(Boolean).length, 8);
-  const names = find(tabs, 'ranking')
-    .table.rows.slice(0, 8)
+  const best = find(tabs, 'ranking')
+    .table.rows.slice(0, 12)
     .map((row) => row[0]);
-  assert.deepEqual(
-    names.filter((name) => !option.legend.selected[name]),
-    [],
+  for (const id of ['convergence', 'runtime-ecdf', 'parallel']) {
+    const { legend } = find(tabs, id).draw(study.kLight, {});
+    assert.equal(legend.data.length, 40, id);
+    const drawn = Object.keys(legend.selected).filter((name) => legend.selected[name]);
+    assert.deepEqual(drawn.sort(), best.slice().sort(), id);
+  }
+  assert.match(
+    find(tabs, 'convergence').caption,
+    /Of the 40 optimizers, the best 12 are drawn at first\. The legend switches them on and off\.$/,
   );
+});
+
+test('up to twelve optimizers are all drawn at first', () => {
+  const tabs = study.make_study_tabs(study.make_study_data({ optimizers: 12, replicates: 6, problems: 1 }));
+  for (const id of ['convergence', 'runtime-ecdf', 'data-profile', 'performance-profile', 'parallel']) {
+    const { legend } = find(tabs, id).draw(study.kLight, {});
+    assert.ok(
+      Object.values(legend.selected).every((one) => one),
+      id,
+    );
+    assert.doesNotMatch(find(tabs, id).caption, /at first/);
+  }
+});
+
+test('sixteen optimizers differ in colour, dash or symbol', () => {
+  const tabs = study.make_study_tabs(study.make_study_data({ optimizers: 16, replicates: 6, problems: 1, infinite: 'none' }));
+  for (const look of [study.kLight, study.kDark]) {
+    for (const id of ['convergence', 'runtime-ecdf', 'data-profile', 'performance-profile', 'parallel']) {
+      const lines = find(tabs, id)
+        .draw(look, {})
+        .series.filter((one) => one.type === 'line' && one.name !== undefined);
+      assert.equal(lines.length, 16, id);
+      const describe = (line) => JSON.stringify([line.lineStyle.color, line.lineStyle.type, line.symbol, line.itemStyle.borderColor ?? '']);
+      assert.equal(new Set(lines.map(describe)).size, 16, id);
+      // The symbols alone distinguish the optimizers of a colour.
+      assert.equal(
+        new Set(lines.map((line) => JSON.stringify([line.lineStyle.color, line.symbol, line.itemStyle.borderColor ?? '']))).size,
+        16,
+        id,
+      );
+    }
+    const points = find(tabs, 'cost-quality')
+      .draw(look, study.get_initial_picks(find(tabs, 'cost-quality')))
+      .series.find((one) => one.type === 'scatter').data;
+    assert.equal(points.length, 16);
+    assert.equal(new Set(points.map((point) => JSON.stringify([point.symbol, point.itemStyle]))).size, 16);
+  }
+});
+
+test('a profile opens where something is seen', () => {
+  const data = study.make_study_data({ optimizers: 3, replicates: 4, problems: 2 });
+  const empty = data.optimizers.map(() => data.overall.kappas.map(() => 0));
+  // At the tolerance 1e-3 the first optimizer solves 15 % at the last three budgets, at 0.1 half.
+  const some = empty.map((shares, o) => shares.map((_, i) => (o === 0 && i > 37 ? 0.15 : 0)));
+  const half = empty.map((shares, o) => shares.map((_, i) => (o === 0 && i > 20 ? 0.5 : 0)));
+  data.overall.data_profiles = [half, some, empty].map((shares, i) => ({ tolerance: [0.1, 0.001, 0.00001][i], shares }));
+  const figure = find(study.make_study_tabs(data), 'data-profile');
+  assert.equal(figure.choices[0].initial, '0');
+  const get_axes = (tolerance) => {
+    const { xAxis, yAxis, series } = figure.draw(study.kLight, { tolerance });
+    const line = series.find((one) => one.name === data.optimizers[0].label);
+    return { left: xAxis.min, top: yAxis.max, points: line.data.length, first: line.data[0].value };
+  };
+  const [wide, narrow, none] = ['0', '1', '2'].map(get_axes);
+  assert.deepEqual([wide.top, narrow.top, none.top], [0.5, 0.2, 1]);
+  assert.deepEqual(narrow.first, [data.overall.kappas[37], 0]);
+  assert.equal(narrow.points, 4);
+  assert.ok(narrow.left <= data.overall.kappas[37] && narrow.left > data.overall.kappas[35]);
+  assert.deepEqual(wide.first, [data.overall.kappas[20], 0]);
+  assert.equal(none.points, 41);
+  assert.equal(figure.table({ tolerance: '1' }).rows.length, 3 * 41); // the table has all budgets
 });
 
 test('fronts draw with their reference point, in millimetres', () => {
@@ -152,6 +227,7 @@ test('what is missing is left out and said', () => {
   }
   const tabs = study.make_study_tabs(data);
   check_tabs(tabs);
+  assert.match(find(tabs, 'headline').paragraphs[0], /no verdict yet/);
   assert.match(find(tabs, 'unfinished').paragraphs[0], /5 of 24 cells are done\. 24 runs have not ended/);
   assert.equal(find(tabs, 'pairs-q1-problem-1'), undefined);
   assert.match(find(tabs, 'values-q1-problem-1').caption, /Unfinished: 12 runs/);
@@ -261,4 +337,254 @@ test('scales keep what has no value off the axis', () => {
 
 test('slugs are safe and unique', () => {
   assert.deepEqual(study.make_slugs(['Q1: a/b', 'q1 a b', '../..', '']), ['q1-a-b', 'q1-a-b-2', 'unnamed', 'unnamed-2']);
+});
+
+// A study whose problems have these tests of the leader: one text per problem, one letter per
+// optimizer that is not the leader, in the order of the ranking. "w": the leader beats it, "b": it
+// beats the leader, "-": not told apart. `leaders` has the index of each leader; default 0.
+function make_decided(problems, leaders = [], more = {}) {
+  const data = study.make_study_data({ optimizers: problems[0].length + 1, replicates: 15, problems: problems.length, infinite: 'none' });
+  data.problems.forEach((problem, p) => {
+    const leader = leaders[p] ?? 0;
+    const others = data.optimizers.map((_, o) => o).filter((o) => o !== leader);
+    problem.label = 'p' + (p + 1);
+    problem.order = [leader, ...others];
+    problem.pairs = others.map((o, i) => {
+      const letter = problems[p][i];
+      const [a, b] = letter === 'b' ? [o, leader] : [leader, o];
+      return { a, b, p: 0.01, p_holm: 0.02, a12: 0.9, significant: letter !== '-', wins: 13, ties: 0, losses: 2 };
+    });
+  });
+  'abcdefghijkl'.split('').forEach((name, o) => data.optimizers[o] && (data.optimizers[o].label = name));
+  data.overall.mean_ranks = data.optimizers.map((_, o) => o + 1);
+  return Object.assign(data, more);
+}
+const get_headline = (data) => {
+  const [first] = study.make_study_tabs(data)[0].items;
+  assert.equal(first.id, 'headline');
+  assert.equal(first.paragraphs.length, 1);
+  return first.paragraphs[0];
+};
+
+test('the headline says who is best, and who cannot be told apart from it', () => {
+  const cases = [
+    [['www'], [], 'a is best on p1: it beats every other optimizer.'],
+    [['w-w'], [], 'a ranks best on p1; c cannot be told apart from it.'],
+    [['www', 'www'], [], 'a is best on 2 of 2 problems, where it beats every other optimizer.'],
+    [['--w', '--w'], [], 'a ranks best on 2 of 2 problems; b and c cannot be told apart from it on any of them.'],
+    [['--w', '-ww'], [], 'a ranks best on 2 of 2 problems; b cannot be told apart from it on any of them, and c cannot on some of them.'],
+    [['www', '-ww'], [], 'a ranks best on 2 of 2 problems; b cannot be told apart from it on some of them.'],
+    [
+      ['w--', '---'],
+      [],
+      'a ranks best on 1 of 2 problems; c and d cannot be told apart from it there; on 1 no two optimizers can be told apart.',
+    ],
+    [
+      ['www', '-ww', 'www'],
+      [0, 0, 1],
+      'a ranks best on 2 of 3 problems; b cannot be told apart from it on some of them; b ranks best on 1.',
+    ],
+    [
+      ['www', 'bww'],
+      [],
+      'a is best on 1 of 2 problems, where it beats every other optimizer; on 1 another optimizer beats the leader of the ranking.',
+    ],
+    [
+      ['www', '-ww', 'www', '---'],
+      [0, 1, 2],
+      'a, b and c rank best on 1 of 4 problems each; on 1 of these, others cannot be told apart from the best one; on 1 no two optimizers can be told apart.',
+    ],
+    [
+      ['www', 'www', 'www', 'www'],
+      [0, 0, 1, 2],
+      'a is best on 2 of 4 problems, where it beats every other optimizer; b and c rank best on 1 each.',
+    ],
+  ];
+  for (const [problems, leaders, expected] of cases) {
+    assert.equal(get_headline(make_decided(problems, leaders)), expected);
+  }
+});
+
+test('the headline claims nothing where the verdict decides nothing', () => {
+  const cases = [
+    [['---'], {}, 'No two optimizers can be told apart on p1.'],
+    [['---', '---'], {}, 'No two optimizers can be told apart on any of the 2 problems.'],
+    [['bw-'], {}, 'No optimizer is shown to be best on p1: b beats a, although a leads the ranking.'],
+    [
+      ['bw-', '---'],
+      {},
+      'No optimizer is shown to be best on any of the 2 problems: on 1 another optimizer beats the leader of the ranking; on 1 no two optimizers can be told apart.',
+    ],
+    [
+      ['---'],
+      { replicates: 5, fewest_replicates: 8 },
+      'No pair of optimizers can be decided on p1 with 5 replicates; at least 8 are needed.',
+    ],
+    [
+      ['---', '---'],
+      { replicates: 1, fewest_replicates: 8 },
+      'No pair of optimizers can be decided on any of the 2 problems with 1 replicate; at least 8 are needed.',
+    ],
+  ];
+  for (const [problems, more, expected] of cases) {
+    assert.equal(get_headline(make_decided(problems, [], more)), expected);
+  }
+  // The leader is told apart from none, though two others are told apart from each other.
+  const open = make_decided(['---']);
+  open.problems[0].pairs.push({ ...open.problems[0].pairs[0], a: 1, b: 3, significant: true });
+  assert.equal(
+    get_headline(open),
+    'No optimizer is shown to be best on p1: a, which leads the ranking, cannot be told apart from any other.',
+  );
+  const lost = make_decided(['---']);
+  lost.problems[0].results.forEach((one) => (one.infinite = one.cells.length));
+  assert.equal(get_headline(lost), 'No optimizer found a design that has a value on the test set on p1.');
+  const half = make_decided(['-ww', 'www']);
+  half.problems[1].missing = 3;
+  half.problems[1].pairs = [];
+  assert.equal(get_headline(half), 'a ranks best on 1 of 2 problems; b cannot be told apart from it there; 1 problem is unfinished.');
+  half.problems[0].missing = 1;
+  assert.equal(get_headline(half), 'There is no verdict yet: runs on each of the 2 problems have not ended.');
+  const one = study.make_study_data({ optimizers: 1, replicates: 5, problems: 1 });
+  assert.equal(get_headline(one), 'There is nothing to compare: one optimizer took part.');
+});
+
+test('the headline names five optimizers at most', () => {
+  assert.equal(get_headline(make_decided(['-------w'])), 'a ranks best on p1; b, c, d, e, f and 2 more cannot be told apart from it.');
+  assert.match(
+    get_headline(make_decided(['----ww', '------'.slice(0, 4) + '-w'])),
+    /; b, c, d and e .* of them, and f cannot on some of them\.$/,
+  );
+  assert.match(get_headline(make_decided(['-----www', '-------w'])), /and 2 others cannot on some of them\.$/);
+});
+
+test('the grid shows the rank of every median and what the tests decide', () => {
+  const data = make_decided(['w-b', 'w-w', '---']);
+  data.problems[2].missing = 1;
+  data.problems[2].pairs = [];
+  data.problems[2].results.forEach((one) => (one.median_rank = null));
+  const grid = find(study.make_study_tabs(data), 'standing');
+  check_tabs(study.make_study_tabs(data));
+  const { columns, rows } = grid.table({});
+  assert.deepEqual(
+    columns.map((column) => column.label),
+    ['problem', 'optimizer', 'rank of the median', 'median', 'unit', 'standing', 'in words'],
+  );
+  const standing = (label) => rows.filter((row) => row[0] === label).map((row) => row[1] + ' ' + row[5]);
+  assert.deepEqual(standing('p1'), [
+    'a not told apart from the leader',
+    'b worse than the leader',
+    'c not told apart from the leader',
+    'd better than the leader',
+  ]);
+  assert.deepEqual(standing('p2'), [
+    'a ranks best',
+    'b worse than the leader',
+    'c not told apart from the leader',
+    'd worse than the leader',
+  ]);
+  assert.deepEqual(standing('p3'), ['a no verdict', 'b no verdict', 'c no verdict', 'd no verdict']);
+  assert.equal(rows[0][6], 'it leads the ranking, but its lead is not decided');
+  assert.equal(rows[1][6], 'a beats it (A12 of a 0.90, p = 0.020 after Holm)');
+  assert.equal(rows[3][6], 'it beats a, which leads the ranking (A12 of a 0.10, p = 0.020 after Holm)');
+  assert.equal(rows[4][2], data.problems[1].results[0].median_rank);
+  assert.equal(rows[4][3], data.problems[1].results[0].median * 1000);
+  assert.equal(rows[8][2], null);
+  // The legend has exactly the symbols that occur.
+  const { legend, series } = grid.draw(study.kLight, {});
+  assert.deepEqual(
+    legend.data.map((entry) => entry.name),
+    ['ranks best', 'not told apart', 'worse', 'better', 'no verdict'],
+  );
+  assert.equal(new Set(legend.data.map((entry) => entry.icon)).size, 5);
+  assert.equal(series[0].data.length, 12);
+  assert.match(series[0].data[0].note, /^a on p1; median .* mm, rank 1; it leads the ranking/);
+});
+
+test('the optimizer that is best on most problems is the first row of the grid', () => {
+  const data = make_decided(['www', 'www', 'www'], [2, 2, 0]);
+  const { rows } = find(study.make_study_tabs(data), 'standing').table({});
+  assert.deepEqual(
+    rows.slice(0, 4).map((row) => row[1]),
+    ['c', 'a', 'b', 'd'],
+  );
+});
+
+test('the grid has a name for every row, and its texts can be read on their cells', () => {
+  const light = (part) => (part <= 10.31 ? part / 3294.6 : Math.pow((part / 255 + 0.055) / 1.055, 2.4));
+  const get_luminance = (color) => {
+    const parts = color.startsWith('#') ? [1, 3, 5].map((i) => parseInt(color.slice(i, i + 2), 16)) : color.match(/\d+/g).map(Number);
+    return 0.2126 * light(parts[0]) + 0.7152 * light(parts[1]) + 0.0722 * light(parts[2]);
+  };
+  for (const optimizers of [12, 40]) {
+    const data = study.make_study_data({ optimizers, replicates: 15, problems: 4, infinite: 'none' });
+    const grid = find(study.make_study_tabs(data), 'standing');
+    for (const look of [study.kLight, study.kDark]) {
+      const svg = study.draw_svg(grid, look, {}, 1180, grid.height);
+      data.optimizers.forEach(({ label }) => assert.ok(svg.includes('>' + label + '<'), label));
+    }
+  }
+  for (let share = 0; share <= 1; share += 0.01) {
+    for (const look of [study.kLight, study.kDark]) {
+      const fill = study.mix(look.background, look.series[0], share);
+      const both = [get_luminance(fill), get_luminance(study.get_readable(fill))].sort((a, b) => a - b);
+      assert.ok((both[1] + 0.05) / (both[0] + 0.05) >= 4.5, `${fill}: ${(both[1] + 0.05) / (both[0] + 0.05)}`);
+    }
+  }
+});
+
+test('the grid names the problems, or numbers them where they have no room', () => {
+  const find_grid = (problems) =>
+    find(study.make_study_tabs(study.make_study_data({ optimizers: 3, replicates: 8, problems })), 'standing');
+  const few = study.draw_svg(find_grid(3), study.kLight, {}, 300, 200);
+  const many = find_grid(8);
+  const narrow = study.draw_svg(many, study.kLight, {}, 300, 200);
+  const wide = study.draw_svg(many, study.kLight, {}, 1180, 200);
+  for (let p = 1; p <= 8; ++p) {
+    assert.ok(wide.includes('>Q1 problem ' + p + '<') && !narrow.includes('problem'), `${p}`);
+    assert.ok(narrow.includes('>' + p + '<'), `${p}`);
+  }
+  assert.ok(few.includes('>Q1 problem<') && !few.includes('>Q1 problem 1<'), 'broken into two lines');
+  assert.match(many.caption, /In a narrow window the problems have numbers/);
+});
+
+test('the verdict is folded away, whole', () => {
+  const data = study.make_study_data({ optimizers: 3, replicates: 8, problems: 2 });
+  data.verdict = ['One.', 'Two.'];
+  const verdict = find(study.make_study_tabs(data), 'verdict');
+  assert.equal(verdict.style, 'folded');
+  assert.deepEqual(verdict.paragraphs, ['One.', 'Two.']);
+});
+
+test('tables leave out columns that have no value', () => {
+  const data = study.make_study_data({ optimizers: 3, replicates: 4, problems: 2 });
+  const get_labels = (id) => find(study.make_study_tabs(data), id).table.columns.map((column) => column.label);
+  const overall = ['optimizer', 'mean rank', 'from', 'to', 'median, Q1 problem 1', 'median, Q1 problem 2'];
+  assert.deepEqual(get_labels('overall'), overall);
+  assert.ok(get_labels('cells-q1-problem-1').includes('time'));
+  assert.ok(get_labels('ranking-q1-problem-1').includes('checked on'));
+  data.overall.rank_intervals = null;
+  for (const problem of data.problems) {
+    for (const result of problem.results) {
+      result.final_check = null;
+      result.cells.forEach((cell) => Object.assign(cell, { seconds: null, failure: '', value: null }));
+    }
+  }
+  check_tabs(study.make_study_tabs(data));
+  assert.deepEqual(
+    get_labels('overall'),
+    overall.filter((label) => label !== 'from' && label !== 'to'),
+  );
+  assert.deepEqual(get_labels('cells-q1-problem-1'), [
+    'optimizer',
+    'replicate',
+    'value',
+    'cases',
+    'evaluations',
+    'failed test cases',
+    'folder',
+  ]);
+  const ranking = get_labels('ranking-q1-problem-1');
+  ['checked on', 'best design there', 'failures there'].forEach((label) => assert.ok(!ranking.includes(label), label));
+  assert.ok(ranking.includes('median') && ranking.includes('mean rank'));
 });

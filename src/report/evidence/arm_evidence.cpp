@@ -183,7 +183,9 @@ json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& d
     list.push_back(make_design_info(design.named));
   }
   json sweep = nullptr;
+  json health = nullptr;
   if (simulator != nullptr) {
+    health = make_health(run, designs.front(), *simulator);
     sweep = make_speed_sweep(run, designs, *simulator, notes);
   }
   // The signals have the winner's own speed, if it has one.
@@ -192,7 +194,8 @@ json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& d
       designs.empty() ? tracking.config().task : tracking.make_task(designs.front().named.design);
   return {{"designs", std::move(list)},           {"parameters", make_parameters(run, designs)},
           {"results", make_result_rows(designs)}, {"response", make_response(run, designs)},
-          {"signals", make_signals(task, true)},  {"sweep", std::move(sweep)}};
+          {"signals", make_signals(task, true)},  {"sweep", std::move(sweep)},
+          {"health", std::move(health)}};
 }
 
 }  // namespace armwright

@@ -40,6 +40,15 @@ nlohmann::json make_test_errors(const RecordedRun& run, const std::vector<ShownD
 nlohmann::json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                                  PageSimulator* simulator, std::vector<std::string>& notes);
 
+// Returns Health of web/src/data.ts: the winner's results on the whole test set, which it must have,
+// and its motion on the median case by error, which is simulated here. Throws WorkStopped.
+nlohmann::json make_health(const RecordedRun& run, const ShownDesign& winner,
+                           PageSimulator& simulator);
+inline constexpr std::uint64_t kHealthCases = 1;  // that make_health() simulates
+// Returns the indices of the cases by error, the smallest first. A NaN counts as larger than every
+// number; of equal errors the first case comes first.
+std::vector<std::size_t> rank_by_error(const std::vector<double>& errors);
+
 // Returns Sweep of web/src/data.ts: the designs at other mean speeds of the target, as in the
 // thesis's Fig. 6.16. Returns null if there is nothing to sweep. Throws WorkStopped.
 nlohmann::json make_speed_sweep(const RecordedRun& run, const std::vector<ShownDesign>& designs,

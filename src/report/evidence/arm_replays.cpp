@@ -37,14 +37,13 @@ void add_training_case(const RecordedRun& run, ReplayList& replays) {
   replays.add(cases.set, cases.numbers.front(), reason);
 }
 
+double get_rankable(double error) {
+  return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
+}
+
 void add_by_rank(const RecordedRun& run, const std::vector<double>& errors, ReplayList& replays) {
   const std::string& set = run.problem->sets.test;
-  const auto value = [&](std::size_t i) {
-    return std::isnan(errors[i]) ? std::numeric_limits<double>::infinity() : errors[i];
-  };
-  std::vector<std::size_t> order(errors.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, value);
+  const std::vector<std::size_t> order = rank_by_error(errors);
   const std::size_t count = errors.size();
   replays.add(set, order[(count - 1) / 2], fmt::format("the median of {}", count));
   replays.add(set, order[(95 * count + 99) / 100 - 1], "the 95th percentile");
@@ -52,7 +51,7 @@ void add_by_rank(const RecordedRun& run, const std::vector<double>& errors, Repl
   constexpr int kMostFailures = 3;
   int shown = 0;
   for (std::size_t i = 0; i < count && shown < kMostFailures; ++i) {
-    if (value(i) > kFailureError_m) {
+    if (get_rankable(errors[i]) > kFailureError_m) {
       replays.add(set, i, "a failure of the winner");
       ++shown;
     }
@@ -60,6 +59,13 @@ void add_by_rank(const RecordedRun& run, const std::vector<double>& errors, Repl
 }
 
 }  // namespace
+
+std::vector<std::size_t> rank_by_error(const std::vector<double>& errors) {
+  std::vector<std::size_t> order(errors.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return get_rankable(errors[i]); });
+  return order;
+}
 
 std::vector<ReplayRequest> choose_replays(const RecordedRun& run,
                                           const std::vector<ShownDesign>& designs,

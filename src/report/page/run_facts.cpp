@@ -95,6 +95,12 @@ void add_counts(const RecordedRun& run, Facts& facts) {
   facts.add("Evaluations without a number", fmt::format("{}", failed));
 }
 
+std::optional<double> find_total_torque(const RunResult& result) {
+  const auto torque = std::ranges::find(result.metric_names, "total_torque");
+  const auto at = static_cast<std::size_t>(torque - result.metric_names.begin());
+  return at < result.test.metrics.size() ? std::optional(result.test.metrics[at]) : std::nullopt;
+}
+
 void add_result(const RunResult& result, Facts& facts) {
   facts.add("End", result.end_reason);
   facts.add("Why the optimizer ended", result.end_detail);
@@ -114,11 +120,7 @@ void add_result(const RunResult& result, Facts& facts) {
     facts.add("95th percentile", summary.percentile_95, "m");
     facts.add("Worst error", summary.worst, "m");
     facts.add("Failures", fmt::format("{}", summary.failures));
-    const auto torque = std::ranges::find(result.metric_names, "total_torque");
-    const auto at = static_cast<std::size_t>(torque - result.metric_names.begin());
-    if (at < result.test.metrics.size()) {
-      facts.add("Total torque", result.test.metrics[at], "N m");
-    }
+    facts.add("Total torque", find_total_torque(result), "N m");
     facts.add("Published total torque", result.published.total_torque_n_m, "N m");
   }
   if (!result.test.objectives.empty()) {
@@ -146,6 +148,29 @@ json make_run_facts(const RecordedRun& run) {
     facts.add(label, found == run.build.end() ? "" : found->second);
   }
   return facts.take();
+}
+
+json make_headline(const RecordedRun& run, const History& history) {
+  const std::int64_t cases = history.parts.empty() ? 0 : history.parts.back().cases;
+  json headline = {{"started", run.started}, {"evaluations", run.journal.training.size()},
+                   {"cases", cases},         {"value", nullptr},
+                   {"quantity", nullptr},    {"failures", nullptr},
+                   {"test_cases", nullptr},  {"total_torque_n_m", nullptr}};
+  if (!run.result || !run.result->winner) {
+    return headline;
+  }
+  const RunResult& result = *run.result;
+  if (result.tracking) {
+    headline["quantity"] = make_quantity({"mean error", "m"});
+    headline["value"] = finite_or_null(result.test_summary.mean);
+    headline["failures"] = result.test_summary.failures;
+    headline["test_cases"] = result.test_summary.cases;
+    headline["total_torque_n_m"] = finite_or_null(find_total_torque(result));
+  } else if (!result.test.objectives.empty()) {
+    headline["quantity"] = make_quantity(get_target(result));
+    headline["value"] = finite_or_null(calc_target(result, result.test));
+  }
+  return headline;
 }
 
 json make_requirements(const RecordedRun& run) {

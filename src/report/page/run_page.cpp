@@ -129,7 +129,7 @@ void add_arm(const RecordedRun& run, const PageOptions& options, PageSimulator* 
     simulator->expect(requests.size() * named.size());
     if (has_winner) {
       simulator->expect(designs.size() * static_cast<std::uint64_t>(run.problem->sets.test_cases) +
-                        count_sweep_cases(run, designs));
+                        count_sweep_cases(run, designs) + kHealthCases);
       simulate_designs(run, *simulator, designs);
       compare_with_record(run, designs, notes);
     }
@@ -181,6 +181,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
                {"finished", run.result.has_value()},
                {"progress", std::move(progress)},
                {"facts", make_run_facts(run)},
+               {"headline", make_headline(run, history)},
                {"robots", json::array()},
                {"replays", json::array()},
                {"problem", run.problem_name},

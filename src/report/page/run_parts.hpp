@@ -36,6 +36,9 @@ struct History {
 // Returns at most 1000 generations (every n-th and the last) or at most 400 blocks.
 History divide_history(const RecordedEvaluations& training);
 
+// Returns Headline: what the run recorded of its result and effort. Fields without a record are null.
+nlohmann::json make_headline(const RecordedRun& run, const History& history);
+
 // Returns at most `most` incumbents, evenly spread, with the first and the last.
 std::vector<Incumbent> thin_out(const std::vector<Incumbent>& incumbents, std::size_t most);
 

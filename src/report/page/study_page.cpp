@@ -11,6 +11,7 @@
 #include "study/analysis/final_check.hpp"
 #include "study/analysis/verdict.hpp"
 #include "study/compare/study_folder.hpp"
+#include "study/statistics/power.hpp"
 
 namespace armwright {
 namespace {
@@ -27,6 +28,13 @@ json make_optimizers(const StudyPlan& plan) {
     list.push_back({{"label", optimizer.label}, {"name", optimizer.row.name}});
   }
   return list;
+}
+
+// Returns the smallest number of replicates with which a pair of optimizers can be decided; null if
+// there is no pair.
+json find_fewest_replicates(const StudyPlan& plan) {
+  const std::size_t pairs = plan.optimizers.size() * (plan.optimizers.size() - 1) / 2;
+  return pairs > 0 ? json(find_fewest_pairs(pairs)) : json(nullptr);
 }
 
 json make_problems(const StudyPlan& plan, const StudyResult& result,
@@ -85,6 +93,7 @@ std::optional<std::string> make_study_page(const std::filesystem::path& folder,
       {"verdict", describe_verdict(plan, result)},
       {"optimizers", make_optimizers(plan)},
       {"replicates", plan.replicates},
+      {"fewest_replicates", find_fewest_replicates(plan)},
       {"reference", sanitize(plan.reference)},
       {"budget", plan.budget},
       {"problems", make_problems(plan, result, folder)},

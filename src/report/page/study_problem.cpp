@@ -7,6 +7,7 @@
 #include "report/evidence/page_json.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/analysis/verdict.hpp"
+#include "study/statistics/ranking.hpp"
 #include "study/statistics/summary.hpp"
 
 namespace armwright {
@@ -142,6 +143,16 @@ json make_result(const StudyPlan& plan, const Cell& first, std::span<const CellO
       {"final_check", make_final_check(one.final_check)}};
 }
 
+// Returns the rank of each optimizer's median, as in the mean ranks over problems: 1 is best, and
+// medians that count as equal share their ranks.
+std::vector<double> calc_median_ranks(const ProblemResult& result) {
+  std::vector<double> medians;
+  for (const OptimizerResult& one : result.optimizers) {
+    medians.push_back(result.margin.round(one.spread.median));
+  }
+  return calc_ranks(medians);
+}
+
 json make_variables(const ProblemDescription& problem) {
   json list = json::array();
   for (const DecisionVariable& variable : problem.variables) {
@@ -201,11 +212,14 @@ json make_study_problem(const StudyPlan& plan, std::size_t number,
   const StudyProblem& problem = plan.problems[number];
   const ProblemDescription& description = problem.loaded.problem->description();
   const std::size_t total = plan.optimizers.size() * static_cast<std::size_t>(plan.replicates);
+  const bool compared = cells.size() == total;
+  const std::vector<double> median_ranks = calc_median_ranks(result);
   json results = json::array();
   for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
     results.push_back(make_result(plan, {number, o, 1},
                                   list_cells_of(cells, plan.optimizers[o].label),
-                                  result.optimizers[o], cells.size() == total, folder));
+                                  result.optimizers[o], compared, folder));
+    results.back()["median_rank"] = compared ? json(median_ranks[o]) : json(nullptr);
   }
   return {{"label", problem.label},
           {"title", problem.loaded.title},

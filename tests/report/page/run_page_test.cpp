@@ -106,6 +106,11 @@ TEST_F(RunPage, HasWhatTheContractSaysForAnArm) {
   expect_interface(page["arm"]["signals"]["curves"][0], {"SignalCurve"});
   expect_interface(page["arm"]["sweep"], {"Sweep"});
   expect_interface(page["arm"]["designs"][0], {"DesignInfo"});
+  expect_interface(page["headline"], {"Headline"});
+  const json& health = page["arm"]["health"];
+  expect_interface(health, {"Health"});
+  expect_interface(health["joints"][0], {"JointHealth"});
+  expect_interface(health["moves"], {"MoveHealth"});
   const json& replay = page["replays"][0];
   expect_interface(replay, {"ReplaySet"});
   expect_interface(replay["task"], {"TaskInfo"});
@@ -132,6 +137,44 @@ TEST_F(RunPage, HasWhatTheContractSaysForAnArm) {
   EXPECT_EQ(page["notes"], json::array());
   EXPECT_EQ(page["arm"]["results"][0]["cases"], 6);
   EXPECT_EQ(page["test"]["designs"].size(), 3u);
+}
+
+TEST_F(RunPage, HasTheHealthOfTheWinnerOnTheMedianCase) {
+  make_run(make_plan("q1-complex", "ga", 24), "a");
+  const json page = make_page("a");
+  const json& health = page["arm"]["health"];
+  EXPECT_EQ(health["joints"].size(), 4u);
+  EXPECT_EQ(health["cases"], 6);
+  EXPECT_EQ(health["moves"]["count"], 24);  // the first of 25 points does not count
+  const json& replay = page["replays"][0];
+  const auto is_median = [&](const json& one) {
+    return one["id"] == health["case"] &&
+           one["label"].get<std::string>().ends_with("the median of 6");
+  };
+  const auto median = std::ranges::find_if(replay["cases"], is_median);
+  ASSERT_NE(median, replay["cases"].end()) << health["case"];
+  // The replay has the same efforts in single precision.
+  const json& motion = (*median)["motions"][0];
+  const auto efforts = unpack_f32(motion["effort"]);
+  for (std::size_t joint = 0; joint < 4; ++joint) {
+    const json& limits = replay["designs"][0]["effort_limits"][joint];
+    double used = 0;
+    for (std::size_t i = joint; i < efforts.size(); i += 4) {
+      const double limit = limits[efforts[i] < 0 ? 0 : 1];
+      used = std::max(used, efforts[i] / limit);
+    }
+    EXPECT_NEAR(health["joints"][joint]["used_share"].get<double>(), used, 1e-6);
+  }
+
+  PageOptions options;
+  options.simulate = false;
+  const json without = make_page("a", options);
+  EXPECT_TRUE(without["arm"]["health"].is_null());
+  EXPECT_EQ(without["headline"], page["headline"]);
+  EXPECT_EQ(page["headline"]["cases"], 24);
+  EXPECT_EQ(page["headline"]["test_cases"], 6);
+  EXPECT_EQ(page["headline"]["value"], page["arm"]["results"][0]["mean_m"]);
+  EXPECT_EQ(page["headline"]["total_torque_n_m"], page["arm"]["results"][0]["total_torque_n_m"]);
 }
 
 TEST_F(RunPage, IsTheSameForAnyNumberOfThreads) {

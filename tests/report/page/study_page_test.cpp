@@ -15,6 +15,7 @@
 #include "report/page/study_parts.hpp"
 #include "study/compare/rerun.hpp"
 #include "study/compare/study_support.hpp"
+#include "study/statistics/power.hpp"
 
 namespace armwright {
 namespace {
@@ -86,6 +87,9 @@ TEST_F(StudyPage, ShowsTheNumbersOfTheTables) {
   EXPECT_TRUE(page["finished"]);
   EXPECT_TRUE(page["progress"].is_null());
   EXPECT_EQ(page["problems"].size(), 2u);
+  const std::size_t pairs = result.problems[0].pairs.size();
+  EXPECT_EQ(page["fewest_replicates"], find_fewest_pairs(pairs));
+  std::vector<double> mean_median_ranks(plan.optimizers.size());
   for (std::size_t p = 0; p < 2; ++p) {
     const ProblemResult& expected = result.problems[p];
     const json& problem = page["problems"][p];
@@ -102,6 +106,7 @@ TEST_F(StudyPage, ShowsTheNumbersOfTheTables) {
       EXPECT_EQ(shown["min"], *std::ranges::min_element(one.values));
       EXPECT_EQ(shown["max"], *std::ranges::max_element(one.values));
       EXPECT_EQ(shown["mean_rank"], one.mean_rank);
+      mean_median_ranks[o] += shown["median_rank"].get<double>() / 2;  // exact: ranks are halves
       EXPECT_EQ(shown["cells"].size(), one.values.size());
       EXPECT_EQ(shown["cells"][2]["value"], one.values[2]);
       EXPECT_EQ(shown["curve"]["median"].size(), problem["checkpoints"].size());
@@ -110,6 +115,7 @@ TEST_F(StudyPage, ShowsTheNumbersOfTheTables) {
   }
   EXPECT_EQ(page["overall"]["mean_ranks"].get<std::vector<double>>(),
             result.overall.ranking.full.mean_ranks);
+  EXPECT_EQ(mean_median_ranks, result.overall.ranking.full.mean_ranks);
   EXPECT_THAT(page["verdict"].get<std::vector<std::string>>(),
               Contains(HasSubstr("with 2 problems, fewer than 6, no pair of optimizers can be "
                                  "decided over problems")));
@@ -259,13 +265,14 @@ TEST_F(StudyPage, OfAStudyUnderWayShowsWhatIsThere) {
   const json& five = problem["results"][0];
   EXPECT_EQ(five["cells"].size(), 5u);
   EXPECT_TRUE(five["mean_rank"].is_null());
+  EXPECT_TRUE(five["median_rank"].is_null());
   std::vector<double> values = whole.problems[1].optimizers[0].values;
   values.pop_back();
   EXPECT_EQ(five["median"], calc_spread(values).median);
   const json& none = problem["results"][1];
   EXPECT_THAT(none["cells"], IsEmpty());
   for (const char* key :
-       {"min", "q1", "median", "q3", "max", "mean_rank", "anytime_area", "cases"}) {
+       {"min", "q1", "median", "q3", "max", "mean_rank", "median_rank", "anytime_area", "cases"}) {
     EXPECT_TRUE(none[key].is_null()) << key;
   }
   // The other problem is complete. It is the only one in the comparison over problems.

@@ -2,6 +2,7 @@
 // downloads.
 import { echarts, type EChartsOption, type EChartsType } from '../charts/echarts';
 import { kLight, type Look } from '../charts/look';
+import { fit_width, kNarrow_px } from '../charts/narrow';
 import { draw_svg, get_initial_picks, get_paper_size, kDefaultHeight } from '../charts/svg';
 import { to_csv } from '../csv';
 import type { Column, Figure, Picked } from '../model';
@@ -68,6 +69,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     'aria-label': figure.title + '. ' + figure.caption,
   });
   plot.style.height = (figure.height ?? kDefaultHeight) + 'px';
+  let drawn_width = 0; // pixels; a narrow chart depends on its width
   const cursor = make('div', { class: 'cursor', 'aria-hidden': 'true' });
   const frame = make('div', { class: 'frame' }, plot, cursor);
   const details = make('div', { class: 'details', role: 'status' });
@@ -76,7 +78,12 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     if (chart === null) {
       return;
     }
-    const drawn = figure.draw(current_look, picked);
+    drawn_width = plot.clientWidth;
+    const { option: drawn, height_px } = fit_width(figure.draw(current_look, picked), drawn_width, figure.height ?? kDefaultHeight);
+    if (plot.clientHeight !== height_px) {
+      plot.style.height = height_px + 'px';
+      chart.resize();
+    }
     // Computing a table can take long and pointers move often, so the columns are computed once per
     // drawing.
     let columns: ReturnType<typeof figure.table>['columns'] | null = null;
@@ -107,7 +114,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     cursor.hidden = !visible;
     if (visible && chart !== null) {
       const x = chart.convertToPixel({ xAxisIndex: 0 }, clock.time_s);
-      const inside = chart.containPixel({ gridIndex: 0 }, [x, (figure.height ?? kDefaultHeight) / 2]);
+      const inside = chart.containPixel({ gridIndex: 0 }, [x, plot.clientHeight / 2]);
       cursor.hidden = !inside;
       cursor.style.transform = `translateX(${x}px)`;
     }
@@ -206,6 +213,9 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
   const observer = new ResizeObserver(() => {
     mount();
     chart?.resize();
+    if (chart !== null && plot.clientWidth !== drawn_width && Math.min(plot.clientWidth, drawn_width) < kNarrow_px) {
+      draw(true);
+    }
     move_cursor();
   });
   observer.observe(plot);

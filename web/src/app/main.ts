@@ -5,6 +5,7 @@ import type { PageData } from '../data';
 import { make_page } from '../figures/page';
 import '../replay/replay.css';
 import './page.css';
+import './summary.css';
 import { follow } from './live';
 import { make_page_view } from './page_view';
 import { load_theme, store_theme, type Theme } from './theme';

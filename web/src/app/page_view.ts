@@ -6,13 +6,18 @@ import { make_replay, type ReplayView } from '../replay/replay';
 import { make_clock, type Clock } from './clock';
 import { make, make_button } from './dom';
 import { make_figure_view } from './figure_view';
+import { make_summary_view } from './summary_view';
 import { make_table_view } from './table_view';
+import { make_text_view } from './text_view';
 import type { View } from './view';
+
+const kLongFact = 100; // characters; a longer value has all columns of the list
 
 function make_facts(facts: Fact[]): HTMLElement {
   const list = make('dl', { class: 'facts' });
   for (const fact of facts) {
-    list.append(make('div', {}, make('dt', {}, fact.label), make('dd', {}, fact.value)));
+    const shape = fact.value.length > kLongFact ? 'long' : 'short';
+    list.append(make('div', { class: shape }, make('dt', {}, fact.label), make('dd', {}, fact.value)));
   }
   return list;
 }
@@ -57,9 +62,11 @@ function make_view(page: Page, item: Item, look: Look, clock: Clock): View {
     case 'table':
       return make_table_view(item);
     case 'text':
-      return make_still(item.id, item.title, 'full', ...item.paragraphs.map((text) => make('p', {}, text)));
+      return make_text_view(item);
     case 'facts':
       return make_still(item.id, item.title, 'full', make_facts(item.facts));
+    case 'summary':
+      return make_summary_view(item);
     case 'replay':
       return make_replay_view(item.id, item.title, page, item, look, clock);
   }
@@ -96,7 +103,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
       {},
       make('div', { class: 'titles' }, title, subtitle),
       state,
-      make_button('Light / dark', events.toggle_theme, { class: 'theme' }),
+      make_button('Light / dark', events.toggle_theme, { class: 'theme', 'aria-label': 'Light / dark' }),
     ),
     notes,
     list,

@@ -1,7 +1,8 @@
 // Tables that the reader can sort by any column, in the page and in a dialog.
 import { get_value, to_csv, get_heading } from '../csv';
-import type { Cell, DataTable, TableItem, Value } from '../model';
+import type { Cell, Column, DataTable, TableItem, Value } from '../model';
 import { format_number } from '../numbers';
+import { make_cut_box } from './cut_box';
 import { make, make_button } from './dom';
 import { download } from './download';
 import { make_provenance } from './provenance';
@@ -9,6 +10,8 @@ import type { View } from './view';
 
 // A table shows this many rows at a time, so that a table of 10 000 cells opens at once.
 const kPortion = 200;
+const kShortUnit = 8; // characters
+const kLong = 24; // characters of a text that needs a wide column
 
 // Compares numbers by size and texts by the alphabet. Missing values come last for both directions.
 function compare(a: Value, b: Value, direction: number): number {
@@ -21,10 +24,11 @@ function compare(a: Value, b: Value, direction: number): number {
   return String(a).localeCompare(String(b), 'en', { numeric: true }) * direction;
 }
 
-function make_cell(cell: Value | Cell, digits: number, details: HTMLElement): HTMLTableCellElement {
+function make_cell(cell: Value | Cell, column: Column, details: HTMLElement): HTMLTableCellElement {
   const value = get_value(cell);
-  const element = make('td', { class: typeof value === 'number' ? 'number' : '' });
-  const text = typeof value === 'number' ? format_number(value, digits) : (value ?? '–');
+  const text = typeof value === 'number' ? format_number(value, column.digits ?? 4) : (value ?? '–');
+  const kind = typeof value === 'number' || column.numeric ? 'number' : text.length > kLong ? 'long' : '';
+  const element = make('td', { class: kind });
   const { command, note } = cell !== null && typeof cell === 'object' ? cell : { command: undefined, note: undefined };
   if (command || note) {
     element.append(
@@ -44,6 +48,12 @@ function make_cell(cell: Value | Cell, digits: number, details: HTMLElement): HT
   return element;
 }
 
+// Returns the heading with a short unit, such as "N m", that no line breaks.
+function get_unbroken_heading(column: Column): string {
+  const { unit = '' } = column;
+  return get_heading(unit.length <= kShortUnit ? { ...column, unit: unit.replace(/ /g, '\u00a0') } : column);
+}
+
 // The order in which a table is sorted: the index of a column, and 1 for ascending or -1 for
 // descending. The choice of the reader is stored here.
 interface Order {
@@ -51,7 +61,7 @@ interface Order {
   direction: number;
 }
 
-function make_table(table: DataTable, details: HTMLElement, order: Order = { column: -1, direction: 1 }): HTMLElement {
+function make_table(title: string, table: DataTable, details: HTMLElement, order: Order = { column: -1, direction: 1 }): HTMLElement {
   const body = make('tbody');
   const headings: HTMLTableCellElement[] = [];
   let rows = table.rows;
@@ -61,7 +71,7 @@ function make_table(table: DataTable, details: HTMLElement, order: Order = { col
   function show(count: number): void {
     const end = Math.min(count, rows.length);
     for (; shown < end; ++shown) {
-      body.append(make('tr', {}, ...rows[shown].map((cell, i) => make_cell(cell, table.columns[i].digits ?? 4, details))));
+      body.append(make('tr', {}, ...rows[shown].map((cell, i) => make_cell(cell, table.columns[i], details))));
     }
     more.hidden = shown >= rows.length;
     more.textContent = `Show more rows (${rows.length - shown} left)`;
@@ -83,7 +93,7 @@ function make_table(table: DataTable, details: HTMLElement, order: Order = { col
   table.columns.forEach((column, i) => {
     const heading = make('th', { scope: 'col', class: column.numeric ? 'number' : '' });
     heading.append(
-      make_button(get_heading(column), () => sort(i, order.column === i ? -order.direction : 1), {
+      make_button(get_unbroken_heading(column), () => sort(i, order.column === i ? -order.direction : 1), {
         class: 'sort',
         title: 'Sort by this column',
       }),
@@ -96,14 +106,14 @@ function make_table(table: DataTable, details: HTMLElement, order: Order = { col
   } else {
     show(kPortion);
   }
-  return make('div', { class: 'table-scroll', tabindex: '0' }, make('table', {}, make('thead', {}, head), body), more);
+  return make_cut_box(title, [make('table', {}, make('thead', {}, head), body), more]);
 }
 
 export function make_table_view(item: TableItem): View {
   const details = make('div', { class: 'details', role: 'status' });
   const order: Order = { column: -1, direction: 1 };
   let table = item.table;
-  let body = make_table(table, details, order);
+  let body = make_table(item.title, table, details, order);
   const element = make(
     'section',
     { class: 'card full', id: 'figure-' + item.id, 'data-figure': item.id },
@@ -130,7 +140,7 @@ export function make_table_view(item: TableItem): View {
         return false;
       }
       table = next.table;
-      const newer = make_table(table, details, order);
+      const newer = make_table(item.title, table, details, order);
       body.replaceWith(newer);
       body = newer;
       return true;
@@ -151,7 +161,7 @@ export function show_table(title: string, table: DataTable): void {
       make('h3', {}, title),
       make_button('Close', () => dialog.close(), { class: 'close-dialog' }),
     ),
-    make_table(table, details),
+    make_table(title, table, details),
     details,
   );
   dialog.addEventListener('close', () => dialog.remove());

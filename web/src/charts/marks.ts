@@ -120,7 +120,7 @@ export function make_panels(count: number, columns: number, height: number): Par
   const foot = (50 / height) * 100;
   const gap = (46 / height) * 100;
   const panel = (100 - head - foot - gap * (rows - 1)) / rows;
-  const left = columns > 2 ? 7.5 : columns > 1 ? 10 : 11;
+  const left = columns > 2 ? 8.5 : columns > 1 ? 10 : 11;
   const width = (100 - 2) / columns - left;
   const grids: Part[] = [];
   for (let i = 0; i < count; ++i) {

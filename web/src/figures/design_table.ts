@@ -9,7 +9,7 @@ export function make_design_table(arm: ArmEvidence): TableItem | null {
     return null;
   }
   const some_at_bound = arm.parameters.some((row) => row.at_bound !== '');
-  const total: Value[] = ['total torque', 'N m', 'sum', '', ...arm.designs.map((design) => design.total_torque_n_m)];
+  const total: Value[] = ['total torque', 'N m', ...arm.designs.map((design) => design.total_torque_n_m), 'sum', ''];
   return {
     kind: 'table',
     id: 'design-table',
@@ -22,17 +22,17 @@ export function make_design_table(arm: ArmEvidence): TableItem | null {
       columns: [
         { label: 'number' },
         { label: 'unit' },
+        ...arm.designs.map((design): Column => ({ label: design.name, numeric: true, digits: 5 })),
         { label: 'kind' },
         { label: 'at bound' },
-        ...arm.designs.map((design): Column => ({ label: design.name, numeric: true, digits: 5 })),
       ],
       rows: [
         ...arm.parameters.map((row): Value[] => [
           row.name,
           row.unit,
+          ...arm.designs.map((_, i) => row.values[i] ?? null),
           row.is_variable ? 'variable' : 'fixed',
           row.at_bound,
-          ...arm.designs.map((_, i) => row.values[i] ?? null),
         ]),
         ...(arm.designs.some((design) => is_number(design.total_torque_n_m)) ? [total] : []),
       ],

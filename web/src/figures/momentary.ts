@@ -59,13 +59,13 @@ export function draw_moves(look: Look, traces: ErrorTrace[], classes: number[], 
   return make_curve_plot(
     look,
     grids.map((_, i) =>
-      make_number_axis(look, 'x', i + columns >= grids.length ? 'time from the start of the move (s)' : '', {
+      make_number_axis(look, 'x', i + columns >= grids.length ? 'time in the move (s)' : '', {
         index: i,
         min: 0,
         max: 'dataMax',
       }),
     ),
-    grids.map((_, i) => make_number_axis(look, 'y', i % columns === 0 ? 'error (mm)' : '', { index: i, log }, { nameGap: 46 })),
+    grids.map((_, i) => make_number_axis(look, 'y', i % columns === 0 ? 'error (mm)' : '', { index: i, log }, { nameGap: 44 })),
     series,
     { grid: grids, title: many ? shown.map((index, i) => make_panel_title(look, grids[i], name_class(traces[0].one, index))) : undefined },
   );

@@ -1,4 +1,5 @@
 // All published errors compared with the errors of new simulations, in one figure.
+import { make_labels } from '../charts/labels';
 import { get_series_style } from '../charts/look';
 import { make_number_axis, make_plot } from '../charts/marks';
 import { shorten } from '../charts/names';
@@ -29,7 +30,7 @@ export function make_published_figure(data: ReproductionData): Figure | null {
     draw: (look) => {
       const style = get_series_style(look, 0);
       const points = rows.map((row) => ({
-        value: [mm(row.published_error_m), mm(row.mean_m)],
+        value: [mm(row.published_error_m), mm(row.mean_m)] as [number, number],
         name: shorten(row.label, 24),
         command: row.command || undefined,
         note: `${shorten(row.label)}: published ${format_number(mm(row.published_error_m))} mm (${shorten(row.where)}), here ${format_number(mm(row.mean_m))} mm over ${row.cases} cases.`,
@@ -55,16 +56,12 @@ export function make_published_figure(data: ReproductionData): Figure | null {
           symbol: 'circle',
           symbolSize: 9,
           itemStyle: { color: style.color },
-          label: {
-            show: true,
-            formatter: (item: { name: string }) => item.name,
-            position: 'left',
-            color: look.text,
-            fontFamily: look.font,
-            fontSize: 11,
-          },
-          labelLayout: { hideOverlap: true },
         },
+        make_labels(
+          look,
+          points.map((point) => point.value),
+          points.map((point) => point.name),
+        ),
       ];
       return make_plot(
         look,

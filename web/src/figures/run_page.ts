@@ -3,6 +3,7 @@ import type { RunData } from '../data';
 import type { Figure, Item, Tab } from '../model';
 import { make_design_table, make_results_table } from './design_table';
 import { make_response_figure } from './distance_response';
+import { make_health_item, make_tiles_item } from './health';
 import { make_joint_figures, make_saturation_table } from './joints';
 import { make_momentary_figure } from './momentary';
 import { make_requirement_table } from './requirement_table';
@@ -41,6 +42,8 @@ export function make_run_tabs(data: RunData): Tab[] {
       id: 'overview',
       title: 'Overview',
       items: [
+        make_tiles_item(data),
+        arm === null || arm.health === null ? null : make_health_item(arm.health),
         arm === null ? null : make_results_table(data, arm),
         make_requirement_table(data.requirements),
         fitness === null ? null : make_half(fitness, 'overview-fitness'),

@@ -53,14 +53,12 @@ function get_lines(scope: Scope, problem: StudyProblem, which: string): Line[] {
   }, [] as Line[]);
 }
 
-type Drawing = { coord(point: number[]): number[] };
+type Drawing = { coord(point: number[]): number[]; getHeight(): number };
+
+const kUpright_px = 24; // axes closer than this have no room for numbers beside each other
 
 // Makes one vertical axis per variable, with its bounds, and with the start as a mark.
 function make_axes(look: Look, variables: Variable[]): Part {
-  const text = (x: number, y: number, value: string, color: string, more: Part = {}): Part => ({
-    type: 'text',
-    style: { x, y, text: value, fill: color, font: '10px ' + look.font, textAlign: 'center', ...more },
-  });
   return {
     type: 'custom',
     name: 'variable',
@@ -88,7 +86,21 @@ function make_axes(look: Look, variables: Variable[]): Part {
       const y_start = api.coord([i, Math.min(1, Math.max(0, place(variable, variable.start)))])[1];
       const room = item.coordSys.width / Math.max(1, variables.length);
       const crowded = room < 44;
-      const number = (value: number) => format_tick(Number(value.toPrecision(crowded ? 2 : 3)));
+      // Numbers that are wider than the distance of the axes stand upright, and names below them.
+      const is_upright = room < kUpright_px;
+      const number = (value: number, at_y: number, is_above: boolean): Part => ({
+        type: 'text',
+        x,
+        y: at_y,
+        rotation: is_upright ? Math.PI / 2 : 0,
+        style: {
+          text: format_tick(Number(value.toPrecision(crowded ? 2 : 3))),
+          fill: look.muted,
+          font: '10px ' + look.font,
+          textAlign: is_upright ? (is_above ? 'left' : 'right') : 'center',
+          textVerticalAlign: is_upright ? 'middle' : is_above ? 'bottom' : 'top',
+        },
+      });
       return {
         type: 'group',
         children: [
@@ -104,20 +116,20 @@ function make_axes(look: Look, variables: Variable[]): Part {
             },
             style: { fill: look.muted },
           },
-          text(x, top - 5, number(variable.upper), look.muted, { textVerticalAlign: 'bottom' }),
-          text(x, bottom + 5, number(variable.lower), look.muted, { textVerticalAlign: 'top' }),
+          number(variable.upper, top - 5, true),
+          number(variable.lower, bottom + 5, false),
           {
             type: 'text',
             x,
-            y: bottom + 22,
-            rotation: Math.PI / 5,
+            y: bottom + (is_upright ? 44 : 22),
+            rotation: is_upright ? Math.PI / 2 : Math.PI / 5,
             style: {
               text: shorten(variable.name, 22) + (variable.logarithmic ? '' : ' (linear)'),
               fill: look.text,
               font: '10px ' + look.font,
               textAlign: 'right',
               textVerticalAlign: 'middle',
-              width: 100,
+              width: is_upright ? Math.min(100, api.getHeight() - bottom - 46) : 100,
               overflow: 'truncate',
             },
           },
@@ -167,7 +179,7 @@ function draw_parallel(look: Look, scope: Scope, problem: StudyProblem, which: s
   const x: Part = { type: 'value', show: false, min: -0.4, max: Math.max(1, problem.variables.length) - 0.6 };
   const y: Part = { ...make_axis(look, 'y', '', {}), show: false, min: 0, max: 1 };
   return make_chart(look, x, y, series, {
-    grid: { left: 66, right: 16, top: names.length > 1 ? 62 : 30, bottom: 108 },
+    grid: { left: 66, right: 16, top: names.length > 1 ? 62 : 30, bottom: 108, narrow: { left: 26, bottom: 150 } },
     legend: {
       show: names.length > 1,
       type: 'scroll',

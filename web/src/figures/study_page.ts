@@ -6,6 +6,8 @@ import type { Item, Tab, TextItem } from '../model';
 import { make_cost_quality } from './study_cost';
 import { make_parallel } from './study_designs';
 import { make_front } from './study_front';
+import { make_standing_grid } from './study_grid';
+import { make_headline } from './study_headline';
 import { make_pairs } from './study_pairs';
 import { make_scope, type Scope } from './study_parts';
 import { make_convergence, make_profiles, make_runtime_ecdf } from './study_progress';
@@ -51,13 +53,17 @@ function make_unfinished(data: StudyData): TextItem | null {
 
 function make_verdict_items(data: StudyData, all: Scope): Item[] {
   const single = data.problems.length === 1;
-  const verdict: Item = {
+  const headline: TextItem = { kind: 'text', id: 'headline', title: 'Verdict', style: 'headline', paragraphs: [make_headline(all)] };
+  const verdict: TextItem = {
     kind: 'text',
     id: 'verdict',
-    title: 'Verdict',
+    title: 'The verdict in full',
+    style: 'folded',
     paragraphs: data.verdict.length > 0 ? data.verdict : ['There is no verdict yet.'],
   };
   return keep([
+    headline,
+    make_standing_grid(all),
     make_unfinished(data),
     verdict,
     single ? make_problem_ranks(all, 'ranks') : make_overall_ranks(all),

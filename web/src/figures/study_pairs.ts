@@ -1,5 +1,6 @@
 // Every two optimizers: whether the tests tell them apart, and how often one beats the other.
 import type { EChartsOption } from '../charts/echarts';
+import { get_readable, mix } from '../charts/fills';
 import type { Look } from '../charts/look';
 import { make_axis, make_chart, type Part } from '../charts/parts';
 import type { StudyPair, StudyProblem } from '../data';
@@ -13,37 +14,6 @@ export function format_p(p: number): string {
     return '<1e-6';
   }
   return p >= 0.995 ? '1' : p >= 0.1 ? p.toFixed(2) : p >= 0.01 ? p.toFixed(3) : p.toExponential(0);
-}
-
-interface Rgb {
-  red: number;
-  green: number;
-  blue: number;
-}
-
-function parse_color(hex: string): Rgb {
-  const part = (from: number) => parseInt(hex.slice(from, from + 2), 16);
-  return { red: part(1), green: part(3), blue: part(5) };
-}
-
-function parse_rgb(color: string): Rgb {
-  const [red, green, blue] = color.slice(4, -1).split(',').map(Number);
-  return { red, green, blue };
-}
-
-function mix(from: string, to: string, share: number): string {
-  const [a, b] = [parse_color(from), parse_color(to)];
-  const one = (x: number, y: number) => Math.round(x + (y - x) * Math.min(1, Math.max(0, share)));
-  return 'rgb(' + one(a.red, b.red) + ',' + one(a.green, b.green) + ',' + one(a.blue, b.blue) + ')';
-}
-
-// Returns black or white, whichever is easier to read on the fill (relative luminance of WCAG 2,
-// with a gamma of 2.2).
-function get_readable(fill: string): string {
-  const light = (part: number) => Math.pow(part / 255, 2.2);
-  const parts = fill.charAt(0) === '#' ? parse_color(fill) : parse_rgb(fill);
-  const luminance = 0.2126 * light(parts.red) + 0.7152 * light(parts.green) + 0.0722 * light(parts.blue);
-  return luminance > 0.18 ? '#14181d' : '#ffffff';
 }
 
 // Returns blue if the row is better, orange if the column is better, and the background in between.
@@ -179,7 +149,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
       itemHeight: 110,
       itemWidth: 12,
       text: ['A12 = 1\nrow better', 'column better\nA12 = 0'],
-      textStyle: { color: look.muted, fontFamily: look.font, fontSize: 10 },
+      textStyle: { color: look.muted, fontFamily: look.font, fontSize: 10, lineHeight: 13 },
       inRange: { color: [0, 0.25, 0.5, 0.75, 1].map((a12) => get_a12_color(look, a12)) },
     },
   });

@@ -10,7 +10,9 @@ import type { Choice, Picked } from '../model';
 import { format_number, kMillimetres } from '../numbers';
 
 // The number of optimizers that are drawn at first. More curves would hide each other.
-export const kMostAtFirst = 8;
+export const kMostAtFirst = 12;
+// With more optimizers colours repeat, with other dashes and symbols.
+const kColours = 8;
 
 export interface Unit {
   factor: number;
@@ -60,7 +62,7 @@ export function make_scope(data: StudyData, problems: StudyProblem[], suffix: st
   const styles = names.map((_, i) => i);
   const order = data.problems[0]?.order ?? [];
   const ranks = data.overall ? data.overall.mean_ranks : names.map((_, i) => (order.indexOf(i) < 0 ? names.length : order.indexOf(i)));
-  if (names.length > kMostAtFirst && ranks.length === names.length) {
+  if (names.length > kColours && ranks.length === names.length) {
     // The best optimizers get the colours that are easiest to distinguish.
     sort_by(styles, (i) => ranks[i]).forEach((optimizer, place) => (styles[optimizer] = place));
   }

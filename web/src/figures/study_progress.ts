@@ -136,14 +136,33 @@ interface Steps {
   order: number[];
 }
 
+// Returns the index of the last abscissa at which all shares are still 0. The axis begins there. If
+// all shares are 0 everywhere, it begins at the first one.
+function find_first_shown(steps: Steps): number {
+  for (let i = 0; i < steps.abscissae.length; ++i) {
+    if (steps.order.some((o) => (steps.shares[o]?.[i] ?? 0) > 0)) {
+      return Math.max(0, i - 1);
+    }
+  }
+  return 0;
+}
+
+// Returns a scale from 0 to a round share that is not less than any of the drawn ones.
+function make_share_scale(steps: Steps): Scale {
+  const most = steps.order.reduce((all, o) => (steps.shares[o] ?? []).reduce((one, share) => Math.max(one, share), all), 0);
+  const high = [0.1, 0.2, 0.5].filter((one) => most > 0 && one >= most)[0] ?? 1;
+  return { log: false, low: 0, high, end: high, ticks: [0, 1, 2, 3, 4, 5].map((i) => Number((0.2 * i * high).toPrecision(3))) };
+}
+
 // Draws shares from 0 to 1 that never decrease.
 function draw_steps(look: Look, scope: Scope, steps: Steps): EChartsOption {
-  const x = make_scale(steps.abscissae, true);
-  const y: Scale = { log: false, low: 0, high: 1, end: 1, ticks: [0, 0.2, 0.4, 0.6, 0.8, 1] };
+  const first = find_first_shown(steps);
+  const x = make_scale(steps.abscissae.slice(first), true);
+  const y = make_share_scale(steps);
   const series: Part[] = [make_grid_lines(look, x, y)];
   steps.order.forEach((o) => {
-    const points = steps.abscissae.map((at, i): Point => {
-      const share = steps.shares[o]?.[i] ?? null;
+    const points = steps.abscissae.slice(first).map((at, i): Point => {
+      const share = steps.shares[o]?.[first + i] ?? null;
       return { value: [at, share], note: scope.names[o] + '; ' + format_number(at, 3) + ': ' + format_number(share, 3) };
     });
     const style = get_style(look, scope, o);
@@ -204,6 +223,18 @@ export function make_runtime_ecdf(scope: Scope): Figure {
   };
 }
 
+// Returns the index of the tightest tolerance at which an optimizer solves half of the pairs, or of
+// the loosest one. A tighter profile is nearly empty. Tolerances are in descending order.
+function find_tightest(profiles: { shares: number[][] }[]): number {
+  let tightest = 0;
+  profiles.forEach((one, i) => {
+    if (one.shares.some((shares) => shares[shares.length - 1] >= 0.5)) {
+      tightest = i;
+    }
+  });
+  return tightest;
+}
+
 function make_profile(
   scope: Scope,
   id: string,
@@ -217,7 +248,7 @@ function make_profile(
     id: 'tolerance',
     label: 'Tolerance',
     options: profiles.map((one, i) => ({ value: String(i), label: format_number(one.tolerance, 1) })),
-    initial: String(Math.min(1, profiles.length - 1)),
+    initial: String(find_tightest(profiles)),
   };
   const ranks = scope.data.overall ? scope.data.overall.mean_ranks : [];
   const order = sort_by(

@@ -7,7 +7,7 @@ import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
 import { make_axis, make_chart, type Part } from '../charts/parts';
 import type { StudyProblem } from '../data';
-import type { Figure, Picked } from '../model';
+import type { Column, Figure, Picked, Value } from '../model';
 import { format_number } from '../numbers';
 import { find_pair } from './study_pairs';
 import { describe_size, end_title, get_problem, make_problem_choices, type Scope, sort_by } from './study_parts';
@@ -21,7 +21,7 @@ export interface Ranks {
 const kRowHeight = 19;
 const kBarHeight = 8;
 const kAbove = 46; // pixels above the axis
-const kMargin = 212; // space for names of some thirty letters and a rank
+const kMargin = 212; // pixels; space for names of some thirty letters and a rank
 
 // Returns all longest stretches, in the order of ranks, in which no two optimizers are told apart.
 export function find_cliques(problem: StudyProblem, ranks: number[]): number[][] {
@@ -94,17 +94,17 @@ function draw_ranks(look: Look, scope: Scope, ranks: Ranks): EChartsOption {
   const on_left = Math.ceil(count / 2);
   const bars = make_bars(ranks);
   const levels = count_levels(ranks);
-  const label = (x: number, y: number, text: string, align: string, color: string): Part => ({
+  const label = (x: number, y: number, text: string, align: string, width: number): Part => ({
     type: 'text',
     style: {
       x,
       y,
       text,
-      fill: color,
+      fill: look.text,
       font: '11px ' + look.font,
       textAlign: align,
       textVerticalAlign: 'middle',
-      width: kMargin - 16,
+      width,
       overflow: 'truncate',
     },
   });
@@ -150,7 +150,7 @@ function draw_ranks(look: Look, scope: Scope, ranks: Ranks): EChartsOption {
             style: { stroke: look.muted, lineWidth: 1, fill: 'none' },
           },
           { type: 'circle', shape: { cx: x, cy: box.y, r: 2.6 }, style: { fill: look.accent } },
-          left ? label(end - 4, y, name + '  ' + rank, 'right', look.text) : label(end + 4, y, rank + '  ' + name, 'left', look.text),
+          left ? label(end - 4, y, name + '  ' + rank, 'right', box.x - 13) : label(end + 4, y, rank + '  ' + name, 'left', box.x - 13),
         ],
       };
     },
@@ -225,21 +225,17 @@ function make_figure(scope: Scope, id: string, title: string, caption: string, g
           .map((clique, k) => (clique.indexOf(i) >= 0 ? String(k + 1) : ''))
           .filter((text) => text !== '')
           .join(' ');
+      const bounds: Column[] = [
+        { label: 'lower', numeric: true },
+        { label: 'upper', numeric: true },
+      ];
+      const columns: Column[] = [{ label: 'optimizer' }, { label: 'mean rank', numeric: true }];
       return {
-        columns: [
-          { label: 'optimizer' },
-          { label: 'mean rank', numeric: true },
-          { label: 'lower', numeric: true },
-          { label: 'upper', numeric: true },
-          { label: 'bars' },
-        ],
-        rows: order.map((i) => [
-          scope.names[i],
-          isFinite(ranks[i]) ? ranks[i] : null,
-          intervals ? intervals[i][0] : null,
-          intervals ? intervals[i][1] : null,
-          groups(i),
-        ]),
+        columns: columns.concat(intervals ? bounds : [], [{ label: 'bars' }]),
+        rows: order.map((i): Value[] => {
+          const row: Value[] = [scope.names[i], isFinite(ranks[i]) ? ranks[i] : null];
+          return row.concat(intervals ? intervals[i] : [], [groups(i)]);
+        }),
       };
     },
   };

@@ -1,4 +1,5 @@
 // The tables of a comparison.
+import { get_value } from '../csv';
 import type { StudyProblem } from '../data';
 import type { Cell, Column, DataTable, TableItem, Value } from '../model';
 import { convert, describe_size, end_title, get_curve_name, get_order, get_unit, type Scope, sort_by, type Unit } from './study_parts';
@@ -25,6 +26,13 @@ function tabulate(
       return all.concat(make_rows(problem, get_problem_unit(problem)).map((row) => before.concat(row)));
     }, [] as Row[]),
   };
+}
+
+// Returns the table without those of the named columns that have no value in any row.
+function drop_empty_columns(table: DataTable, labels: string[]): DataTable {
+  const has_value = (i: number) => table.rows.some((row) => get_value(row[i]) !== null && get_value(row[i]) !== '');
+  const kept = table.columns.map((_, i) => i).filter((i) => labels.indexOf(table.columns[i].label) < 0 || has_value(i));
+  return { columns: kept.map((i) => table.columns[i]), rows: table.rows.map((row) => kept.map((i) => row[i])) };
 }
 
 const get_value_unit = (problem: StudyProblem) => get_unit(problem.quantity.unit);
@@ -95,7 +103,12 @@ export function make_ranking_table(scope: Scope): TableItem {
       (tests.length > 0 && tests.length <= 6
         ? " Friedman's test, in the form of Iman and Davenport, says whether the optimizers differ at all: " + tests.join('; ') + '.'
         : ''),
-    table: tabulate(scope, get_value_unit, columns, rows),
+    table: drop_empty_columns(tabulate(scope, get_value_unit, columns, rows), [
+      'mean rank',
+      'checked on',
+      'best design there',
+      'failures there',
+    ]),
   };
 }
 
@@ -144,14 +157,16 @@ export function make_cells_table(scope: Scope): TableItem {
         ),
       [] as Row[],
     );
+  const has_times = scope.problems.some((problem) => problem.results.some((one) => one.cells.some((cell) => cell.seconds !== null)));
   return {
     kind: 'table',
     id: 'cells' + scope.suffix,
     title: end_title(scope, 'Every run'),
     caption:
-      'All runs that have ended, each with the command that makes it again, bit for bit. The value is that of the winner on the test set; a dash means that there is none. The times are not part of the comparison. ' +
+      'All runs that have ended, each with the command that makes it again, bit for bit. The value is that of the winner on the test set; a dash means that there is none. ' +
+      (has_times ? 'The times are not part of the comparison. ' : '') +
       describe_size(scope),
-    table: tabulate(scope, get_value_unit, columns, rows),
+    table: drop_empty_columns(tabulate(scope, get_value_unit, columns, rows), ['time', "optimizer's failure"]),
   };
 }
 
@@ -273,13 +288,16 @@ export function make_overall_table(scope: Scope): TableItem | null {
       (overall.rank_intervals ? 'The intervals are those of the mean ranks. ' : '') +
       'Ranks depend on the optimizers that take part. ' +
       describe_size(scope),
-    table: {
-      columns,
-      rows: order.map((o) => {
-        const interval = overall.rank_intervals ? overall.rank_intervals[o] : null;
-        const row: Row = [scope.names[o], overall.mean_ranks[o] ?? null, interval ? interval[0] : null, interval ? interval[1] : null];
-        return row.concat(problems.map((problem) => convert(problem.results[o]?.median, get_value_unit(problem))));
-      }),
-    },
+    table: drop_empty_columns(
+      {
+        columns,
+        rows: order.map((o) => {
+          const interval = overall.rank_intervals ? overall.rank_intervals[o] : null;
+          const row: Row = [scope.names[o], overall.mean_ranks[o] ?? null, interval ? interval[0] : null, interval ? interval[1] : null];
+          return row.concat(problems.map((problem) => convert(problem.results[o]?.median, get_value_unit(problem))));
+        }),
+      },
+      ['from', 'to'],
+    ),
   };
 }
