@@ -1,8 +1,9 @@
 // The documentation's site as a reader has it: from disk, in Chromium, with nothing asked of the network.
 import assert from 'node:assert/strict';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { extname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { build_site } from '../../web/site/build.mjs';
@@ -15,6 +16,7 @@ const folder = mkdtempSync(join(tmpdir(), 'armwright-site-'));
 const faults = [];
 let browser;
 let page;
+let served = ''; // the address of serve_site(), while it serves
 
 function address(place) {
   return pathToFileURL(join(folder, place)).href;
@@ -26,12 +28,41 @@ before(async () => {
   page = await browser.context.newPage();
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && faults.push(message.text()));
   page.on('pageerror', (error) => faults.push(error.message));
-  page.on('request', (request) => !/^(file|data):/.test(request.url()) && faults.push(`network: ${request.url()}`));
+  page.on('request', (request) => {
+    const url = request.url();
+    if (!/^(file|data):/.test(url) && (served === '' || !url.startsWith(served))) {
+      faults.push(`network: ${url}`);
+    }
+  });
 });
 after(async () => {
   await browser.close();
   rmSync(folder, { recursive: true, force: true });
 });
+
+// Serves the site on this machine for what pages store: of pages from disk, Chromium sometimes loses it on a
+// busy machine. Returns the function that ends it.
+async function serve_site() {
+  const types = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml' };
+  const server = createServer((request, response) => {
+    const place = decodeURIComponent(new URL(request.url, served).pathname);
+    try {
+      const content = readFileSync(join(folder, place));
+      response.setHeader('Content-Type', types[extname(place)] ?? 'application/octet-stream');
+      response.end(content);
+    } catch {
+      response.writeHead(404).end();
+    }
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  server.unref(); // a failed test does not wait for it
+  served = `http://127.0.0.1:${server.address().port}/`;
+  return () => {
+    served = '';
+    server.close();
+    server.closeAllConnections();
+  };
+}
 
 async function expect_fits(place) {
   const [wide, window_width] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
@@ -78,9 +109,10 @@ async function expect_ground(place, expected, tab = page) {
 }
 
 test('light and dark: the system decides, then the reader', async () => {
+  const stop_serving = await serve_site();
   const white = 'rgb(255, 255, 255)';
   const dark = 'rgb(18, 22, 27)';
-  await page.goto(address('index.html'));
+  await page.goto(served + 'index.html');
   await expect_ground('the system is light', white);
   await page.emulateMedia({ colorScheme: 'dark' });
   await expect_ground('the system is dark', dark);
@@ -89,14 +121,16 @@ test('light and dark: the system decides, then the reader', async () => {
   await page.emulateMedia({ colorScheme: 'light' });
   await page.click('#theme');
   await expect_ground('the reader prefers dark', dark);
-  await page.goto(address('verify.html'));
+  await page.goto(served + 'verify.html');
   await expect_ground('the choice holds on the next page', dark);
   const other = await browser.context.newPage();
-  await other.goto(address('index.html'));
+  await other.goto(served + 'index.html');
   await expect_ground('the choice holds in another tab', dark, other);
   await other.click('#theme');
   await expect_ground('the choice made in another tab holds here too', white);
   await other.close();
+  await page.goto(address('index.html'));
+  stop_serving();
   assert.deepEqual(faults, []);
 });
 
