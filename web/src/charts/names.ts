@@ -34,3 +34,8 @@ export function shorten_all(names: string[], length = 40): string[] {
     return label;
   });
 }
+
+// Returns "a", "a and b" or "a, b and c".
+export function join_names(names: string[]): string {
+  return names.length < 2 ? names.join('') : names.slice(0, -1).join(', ') + ' and ' + names[names.length - 1];
+}

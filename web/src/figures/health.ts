@@ -1,6 +1,6 @@
 // The first screen of a run's page: tiles with the run's result and effort, and the health card of
 // the winner. A sign and a word repeat the meaning of each colour.
-import { shorten } from '../charts/names';
+import { join_names, shorten } from '../charts/names';
 import type { Health, HealthGrade, JointHealth, MoveHealth, RunData } from '../data';
 import type { GradeLine, SummaryItem, Tile } from '../model';
 import { format_number, kMillimetres } from '../numbers';
@@ -23,12 +23,6 @@ function percent(share: number, digits = 2): string {
 function join_some(texts: string[]): string {
   const left = texts.length - kMostNames;
   return texts.slice(0, kMostNames).join(', ') + (left > 0 ? ` and ${left} more` : '');
-}
-
-// Returns "a", "a and b" or "a, b and c".
-function join_names(names: string[]): string {
-  const last = names[names.length - 1];
-  return names.length < 2 ? (last ?? '') : names.slice(0, -1).join(', ') + ' and ' + last;
 }
 
 // ---------------------------------------------------------------- tiles

@@ -1,14 +1,10 @@
 // The one sentence at the top of a comparison. It repeats what the verdict says about the leader of
 // each problem, and is never stronger than the verdict.
-import { shorten } from '../charts/names';
+import { join_names, shorten } from '../charts/names';
 import type { Scope } from './study_parts';
 import { count_best, find_standing, is_decided, order_by_standing, type Lead, type ProblemStanding } from './study_standing';
 
 const kMostNames = 5;
-
-function join_names(names: string[]): string {
-  return names.length < 2 ? names.join('') : names.slice(0, -1).join(', ') + ' and ' + names[names.length - 1];
-}
 
 // Returns "a, b and c", or "a, b and 7 more" if there are more than `most` names.
 function list_names(names: string[], most: number): string {
