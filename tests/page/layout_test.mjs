@@ -42,7 +42,7 @@ function find_faults() {
   const is_scrollable = (element) => /auto|scroll/.test(getComputedStyle(element).overflowX + getComputedStyle(element).overflowY);
   const is_visible = (element) => element.getClientRects().length > 0 && element.checkVisibility({ checkVisibilityCSS: true }); // what is folded has boxes, too
 
-  // What a box that scrolls or clips contains can be larger than the box; the box itself cannot.
+  // A box that scrolls or clips may contain more than it shows, but lies within its card itself.
   const check_children = (card, box, parent) => {
     for (const child of parent.children) {
       const rect = child.getBoundingClientRect();
