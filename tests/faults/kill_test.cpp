@@ -177,19 +177,37 @@ INSTANTIATE_TEST_SUITE_P(Optimizers, KillAHundredTimes,
                                                  "fresh:1", "3000", 5}),
                          [](const auto& test) { return test.param.name; });
 
+// The bytes in all journals of a study; one that does not exist yet has none.
+std::uintmax_t get_size_of_journals(const std::filesystem::path& study) {
+  std::uintmax_t size = 0;
+  for (const char* optimizer : {"cmaes", "ga", "nlopt%3Aneldermead", "random"}) {
+    for (const char* replicate : {"r01", "r02", "r03", "r04"}) {
+      size += get_size(study / "cells/q1-complex" / optimizer / replicate / "journal");
+    }
+  }
+  return size;
+}
+
 // Kills the whole process group, as a closing terminal does, or the parent alone. Its workers must
-// then neither continue to write nor keep the locks.
+// then neither continue to write nor keep the locks. A life is measured in work done, because no
+// machine says how long the comparison takes: a tenth of it at most, so that four lives never
+// finish it.
 TEST_F(Kill, AComparisonWithItsWorkersOrWithoutThem) {
   ASSERT_EQ(run(make_arm_comparison("whole")).exit_code, 0);
+  const auto tenth = static_cast<double>(get_size_of_journals(folder_ / "whole")) / 10;
+  ASSERT_GT(tenth, 0);
   RandomStream random("test/kill-a-comparison", 1);
   int kills = 0;
   for (int life = 0; life < 12; ++life) {
     Environment environment;
     environment.own_group = true;
     environment.variables = {{"FAULTS_MARK", "comparison"}};
+    const std::uintmax_t enough = get_size_of_journals(folder_ / "killed") +
+                                  static_cast<std::uintmax_t>(random.uniform(0, tenth));
     Program program(folder_.path(), make_arm_comparison("killed"), environment);
-    std::this_thread::sleep_for(
-        std::chrono::microseconds(static_cast<long>(random.uniform(20'000, 250'000))));
+    ASSERT_TRUE(wait_until(
+        [&] { return get_size_of_journals(folder_ / "killed") > enough || !program.is_running(); },
+        std::chrono::milliseconds(0)));
     kills += program.is_running() ? 1 : 0;
     if (life % 2 == 0) {
       program.send_group(SIGKILL);
