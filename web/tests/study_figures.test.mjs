@@ -111,6 +111,17 @@ test('several problems have a tab each, many a choice', () => {
   check_tabs(many);
 });
 
+test('the best design on another engine names the run that made it', () => {
+  const { table } = find(study.make_study_tabs(study.make_study_data({ optimizers: 4, replicates: 3, problems: 1 })), 'ranking');
+  const column = table.columns.findIndex((one) => one.label === 'best design there');
+  const cells = table.rows.map((row) => row[column]).filter((cell) => cell !== null);
+  assert.ok(cells.length > 0);
+  for (const cell of cells) {
+    assert.match(cell.command, /^armwright rerun study \d+\/\d+\/r1$/);
+    assert.match(cell.note, /replicate 1\.$/);
+  }
+});
+
 test('forty optimizers with fifteen replicates draw, the best twelve at first', () => {
   const tabs = study.make_study_tabs(study.make_study_data({ optimizers: 40, replicates: 15, problems: 1 }));
   check_tabs(tabs);

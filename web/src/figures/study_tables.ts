@@ -1,6 +1,6 @@
 // The tables of a comparison.
 import { get_value } from '../csv';
-import type { StudyProblem } from '../data';
+import type { StudyOptimizerResult, StudyProblem } from '../data';
 import type { Cell, Column, DataTable, TableItem, Value } from '../model';
 import { convert, describe_size, end_title, get_curve_name, get_order, get_unit, type Scope, sort_by, type Unit } from './study_parts';
 import { tabulate_pairs } from './study_pairs';
@@ -36,6 +36,12 @@ function drop_empty_columns(table: DataTable, labels: string[]): DataTable {
 }
 
 const get_value_unit = (problem: StudyProblem) => get_unit(problem.quantity.unit);
+
+// The command of the best design's run makes the design again.
+function make_best_cell(value: number | null, replicate: number, result: StudyOptimizerResult): Cell {
+  const run = result.cells.filter((cell) => cell.replicate === replicate)[0];
+  return { value, note: `The best design is that of replicate ${replicate}.`, command: run?.command || undefined };
+}
 
 export function make_ranking_table(scope: Scope): TableItem {
   const columns = (unit: string): Column[] => [
@@ -76,7 +82,7 @@ export function make_ranking_table(scope: Scope): TableItem {
         one.failed,
         one.cases,
         check ? check.engine : null,
-        check ? { value: convert(check.value, unit), note: 'replicate ' + check.replicate } : null,
+        check ? make_best_cell(convert(check.value, unit), check.replicate, one) : null,
         check ? check.failures : null,
         one.successes,
       ];
