@@ -143,6 +143,90 @@ test('the replay plays, is scrubbed, and shows the robot', async () => {
   await page.close();
 });
 
+test('the replay opens with the median test case of the winner', async () => {
+  const { winner } = JSON.parse(readFileSync(join(kFolder, 'run', 'result.json'), 'utf8'));
+  const errors = winner.test.case_errors;
+  const median = errors.slice().sort((a, b) => a - b)[Math.floor((errors.length - 1) / 2)];
+  const { page, expect_no_faults } = await open_run();
+  await open_replay(page);
+  const [set, number] = (await get_state(page)).case.split(':');
+  assert.match(set, /^test/);
+  assert.equal(errors[Number(number)], median);
+  const chosen = page.locator('.replay label', { hasText: 'Test case' }).locator('option:checked');
+  assert.match(await chosen.innerText(), new RegExp(`: the median of ${errors.length} by error$`));
+  expect_no_faults();
+  await page.close();
+});
+
+test('the slider of the replay stands above the cursor of its error', async () => {
+  const { page, expect_no_faults } = await open_run();
+  for (const width of [390, 1280]) {
+    await page.setViewportSize({ width, height: 900 });
+    await open_replay(page);
+    await page.waitForFunction(() => window.armwright_replay?.state.frames > 0);
+    await page.locator('.replay-strip').scrollIntoViewIfNeeded();
+    const [slider, strip] = await Promise.all(['.replay-scrub', '.replay-strip'].map((one) => page.locator(one).boundingBox()));
+    const per_pixel_s = (await page.evaluate(() => Number(document.querySelector('.replay-scrub').max) / 100)) / (strip.width - 74);
+    for (const share of [0, 0.3, 0.8, 1]) {
+      const x = strip.x + 62 + share * (strip.width - 74);
+      await page.mouse.click(x, strip.y + 40);
+      const by_strip = await get_state(page);
+      await page.waitForFunction(({ step }) => document.querySelector('.replay-scrub').value === String(step), by_strip);
+      const cursor = await page.locator('.replay-cursor').evaluate((one) => one.getBoundingClientRect().left);
+      assert.ok(Math.abs(cursor - x) <= 1.5, `${width} px, ${share}: the cursor is at ${cursor}, the click at ${x}, step ${by_strip.step}`);
+      // A click beside the handle moves its centre to the pointer.
+      await page.mouse.click(strip.x + 62 + (share < 0.5 ? 0.9 : 0.1) * (strip.width - 74), strip.y + 40);
+      await page.waitForFunction(({ step }) => document.querySelector('.replay-scrub').value !== String(step), by_strip);
+      await page.mouse.click(x, slider.y + slider.height / 2);
+      const by_slider = await get_state(page);
+      const apart_s = Math.abs(by_slider.time_s - by_strip.time_s);
+      assert.ok(apart_s <= 2 * per_pixel_s, `${width} px, ${share}: ${by_slider.time_s} s and ${by_strip.time_s} s`);
+    }
+  }
+  expect_no_faults();
+  await page.close();
+});
+
+test('the arm is seen from above, and its links have the colours of torques or of joint limits', async () => {
+  const { page, expect_no_faults } = await open_run();
+  await open_replay(page);
+  await page.waitForFunction(() => window.armwright_replay?.state.frames > 0);
+  const count_orange = () =>
+    page.evaluate(() => {
+      const canvas = document.querySelector('.replay canvas');
+      const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
+      const context = copy.getContext('2d');
+      context.drawImage(canvas, 0, 0);
+      const { data } = context.getImageData(0, 0, copy.width, copy.height);
+      let orange = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        orange += data[i] > data[i + 2] + 60 ? 1 : 0;
+      }
+      return orange / (data.length / 4);
+    });
+  const draw = async (change) => {
+    const { frames } = await get_state(page);
+    await change();
+    await page.waitForFunction((before) => window.armwright_replay.state.frames > before, frames);
+    return count_orange();
+  };
+  const from_side = await draw(() => page.getByRole('button', { name: 'Side' }).click());
+  const from_above = await draw(() => page.getByRole('button', { name: 'Top' }).click());
+  assert.ok(from_above > 0.001 && Math.abs(from_above - from_side) > 0.1 * from_side, `${from_above} and ${from_side}`);
+  const select = page.locator('.replay label', { hasText: /^Arm/ }).locator('select');
+  for (const paint of ['torque', 'position']) {
+    await select.selectOption('robot');
+    const before = await count_orange();
+    const after = await draw(() => select.selectOption(paint));
+    assert.ok(after < 0.6 * before, `${paint}: ${after} after ${before}`);
+    assert.equal(await page.locator('.replay-paints > span').count(), 6);
+    const rows = await page.locator('.replay-joints dd').allInnerTexts();
+    rows.forEach((row) => assert.match(row, paint === 'torque' ? /, –$/ : /, (\d+ %|at the limit|–)$/));
+  }
+  expect_no_faults();
+  await page.close();
+});
+
 test('the replay and the plots over time share their cursor', async () => {
   const { page, expect_no_faults } = await open_run();
   await open_replay(page);

@@ -7,7 +7,7 @@ import { make_line, type Part, type Point } from '../charts/parts';
 import type { ReplayCase, ReplaySet, Robot } from '../data';
 import type { Choice, Column, DataTable, Figure, Picked, TableItem, Value } from '../model';
 import { format_number, kDegrees, kMillimetres, unpack } from '../numbers';
-import { flatten } from './quantities';
+import { flatten, kAtLimit } from './quantities';
 import {
   get_case,
   get_column,
@@ -28,7 +28,6 @@ interface JointView {
   factor: number; // factor from SI to that unit
 }
 
-const kAtLimit = 1 - 1e-4; // share of a limit from which a torque counts as at the limit; torques are packed in 16 bits
 const kStretches = 300; // the whole time divided by the shortest visible gap between two stretches
 
 function get_joints(robot: Robot): JointView[] {

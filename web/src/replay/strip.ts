@@ -1,5 +1,5 @@
-// The error over the time of the whole test case, under the view. It shows where something happens,
-// and a click goes to that time.
+// The error over the time of the whole test case, under the slider, which has the same time axis. It
+// shows where something happens, and a click goes to that time.
 import { make } from '../app/dom';
 import type { Look } from '../charts/look';
 import { format_number } from '../numbers';
@@ -8,7 +8,7 @@ import type { Scenario, Track } from './scenario';
 import { kGhost } from './stage';
 import { clamp } from './timeline';
 
-const kLeft = 62;
+const kLeft = 62; // px; replay.css places the slider between the same ends
 const kRight = 12;
 const kTop = 6;
 const kBottom = 20;
