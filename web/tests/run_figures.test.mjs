@@ -231,12 +231,35 @@ test('a run on a function has only what a function has', () => {
   }
 });
 
-test('points name what made them', () => {
-  const figure = find(make_run_data(), 'distance-response');
+test('points name what made them, in the order of their distances', () => {
+  const data = make_run_data();
+  const figure = find(data, 'distance-response');
   const option = figure.draw(kLight, get_initial_picks(figure));
-  const point = option.series.find((one) => one.type === 'line').data[3];
+  const points = option.series.find((one) => one.type === 'line').data;
+  points.slice(1).forEach((point, i) => assert.ok(point.value[0] > points[i].value[0], `${point.value[0]}`));
+  const { distances_m } = data.arm.response;
+  const point = points[points.length - 1];
+  assert.equal(point.value[0], 100 * Math.max(...distances_m));
   assert.equal(point.command, 'armwright evaluate table-a5');
-  assert.match(point.note, /Move 4, .* over 500 cases\./);
+  assert.match(point.note, new RegExp(`^Move ${1 + distances_m.indexOf(Math.max(...distances_m))}, .* over 500 cases\\.`));
+  const { ticks, log } = { ticks: option.xAxis.axisTick.customValues, log: option.xAxis.type === 'log' };
+  assert.ok(log && ticks.length >= 3, `${ticks}`);
+  assert.deepEqual(
+    ticks,
+    ticks.slice().sort((a, b) => a - b),
+  );
+});
+
+test('errors start on a logarithmic axis, the first design over the others, and the reader may choose a linear one', () => {
+  for (const id of ['distance-response', 'fitness']) {
+    const figure = find(make_run_data(), id);
+    const initial = get_initial_picks(figure);
+    assert.equal(figure.draw(kLight, initial).yAxis.type, 'log');
+    assert.equal(figure.draw(kLight, { ...initial, scale: 'linear' }).yAxis.type, 'value');
+  }
+  const figure = find(make_run_data(), 'distance-response');
+  const lines = figure.draw(kLight, get_initial_picks(figure)).series.filter((one) => one.type === 'line');
+  lines.slice(1).forEach((line) => assert.ok(line.z < lines[0].z));
 });
 
 test('published means stand beside ours', () => {

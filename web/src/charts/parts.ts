@@ -74,6 +74,7 @@ export interface LineOptions {
   step?: 'start' | 'end';
   width?: number;
   axis?: number; // index of both axes
+  on_top?: boolean; // over the other curves
 }
 
 // A point with its provenance, if that is known.
@@ -94,6 +95,7 @@ export function make_line(look: Look, index: number, name: string, points: Point
     lineStyle: { color: style.color, type: style.dash, width: options.width ?? 1.8 },
     itemStyle: { color: style.color },
     emphasis: { focus: 'none' },
+    z: options.on_top ? 4 : 3,
     xAxisIndex: options.axis ?? 0,
     yAxisIndex: options.axis ?? 0,
   };
