@@ -4,6 +4,7 @@ import test from 'node:test';
 import { load } from './load.mjs';
 
 const {
+  choose_rows,
   draw_svg,
   find_saturated,
   get_initial_picks,
@@ -20,6 +21,7 @@ const {
   export { kDark, kLight } from './src/charts/look';
   export { make_page } from './src/figures/page';
   export { find_saturated } from './src/figures/joints';
+  export { choose_rows } from './src/figures/replay_access';
   export { make_histogram } from './src/figures/test_errors';
   export { group_variables } from './src/figures/variables';
   export { make_replay_set, make_reproduction_data, make_run_data } from './tests/fixtures/pages';
@@ -268,10 +270,32 @@ test('published means stand beside ours', () => {
   assert.match(svg, /Ramp: 5\.80 mm \(published 12\.6\)/);
 });
 
-test('the cursor is shared only where the clock is the case’s', () => {
-  const figure = find(make_run_data(), 'momentary-error');
-  assert.equal(figure.time.case({ ...get_initial_picks(figure) }), '');
-  assert.equal(figure.time.case({ ...get_initial_picks(figure), classes: 'all', case: 'train/1:1' }), 'train/1:1');
+test('panels of moves know their part of the time of the case', () => {
+  const data = make_run_data();
+  const figure = find(data, 'momentary-error');
+  const { replay, case: get_case, panels } = figure.time;
+  const initial = get_initial_picks(figure);
+  assert.equal(replay, data.replays[0].id);
+  assert.equal(get_case({ ...initial, case: 'train/1:1' }), 'train/1:1');
+  assert.deepEqual(panels({ ...initial, classes: 'all' }), []);
+  const [segment] = data.replays[0].cases[0].segments.slice(1);
+  const [part] = panels({ ...initial, classes: '2' });
+  const period_s = data.replays[0].task.control_period_s;
+  assert.equal(part.from, segment.first_step * period_s);
+  assert.equal(part.to, (segment.first_step + segment.steps) * period_s);
+});
+
+test('a zoomed curve has every row of its part of the time', () => {
+  const set = make_replay_set('set'); // a control period of 10 ms
+  const values = Float32Array.from({ length: 10000 }, (_, i) => (i % 7 === 0 ? NaN : Math.sin(i)));
+  const rows = choose_rows(set, values, { from: 20, to: 21 });
+  assert.deepEqual(
+    rows,
+    Array.from({ length: rows.length }, (_, i) => rows[0] + i),
+  );
+  assert.ok((rows[0] + 1) * 0.01 <= 20 && (rows[rows.length - 1] + 1) * 0.01 >= 21, `${rows[0]} to ${rows[rows.length - 1]}`);
+  assert.ok(rows.length < 110);
+  assert.ok(choose_rows(set, values).length <= 2000);
 });
 
 test('a histogram counts every number once, the largest too', () => {

@@ -33,15 +33,17 @@ function make_replay_view(id: string, title: string, page: Page, item: Item, loo
   const replay: ReplayView = make_replay(host, page.data.robots, sets, look, {
     on_time: (set, case_id, time_s) => clock.set(set, case_id, time_s),
   });
-  const stop = clock.listen(() => {
+  const follow = (): void => {
     const state = replay.state;
     if (clock.replay !== state.set || clock.case_id !== state.case) {
       replay.choose(clock.replay, clock.case_id);
     }
-    if (Math.abs(clock.time_s - state.time_s) > 1e-9) {
+    if (clock.replay === state.set && clock.case_id === state.case && Math.abs(clock.time_s - state.time_s) > 1e-9) {
       replay.set_time(clock.time_s);
     }
-  });
+  };
+  follow(); // the reader may return from another tab
+  const stop = clock.listen((change) => (change === 'time' ? follow() : undefined));
   (window as unknown as { armwright_replay?: ReplayView }).armwright_replay = replay;
   return {
     element: make('section', { class: 'card full', id: 'figure-' + id, 'data-figure': id }, make('h3', {}, title), host),
