@@ -360,6 +360,26 @@ test('a drag zooms all plots of a motion, and a click, Escape and a double click
   await page.close();
 });
 
+test('the training has a zoom of its own, for each abscissa', async () => {
+  const { page, expect_no_faults } = await open_run();
+  await open_tab(page, 'training');
+  await page.waitForFunction(() => document.querySelectorAll('[data-figure=fitness] .plot svg path').length > 5);
+  const box = await find_plot(page, 'fitness');
+  await page.mouse.move(box.x + box.width * 0.5, box.y + box.height * 0.5);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.9, box.y + box.height * 0.5, { steps: 4 });
+  await page.mouse.up();
+  assert.equal(await page.locator('[data-figure=fitness] .reset-zoom').isVisible(), true);
+  assert.equal(await page.locator('.reset-zoom:visible').count(), 1);
+  const abscissa = page.locator('[data-figure=fitness] label', { hasText: 'against' }).locator('select');
+  await abscissa.selectOption('cases');
+  assert.equal(await page.locator('.reset-zoom:visible').count(), 0);
+  await abscissa.selectOption('index');
+  assert.equal(await page.locator('.reset-zoom:visible').count(), 1);
+  expect_no_faults();
+  await page.close();
+});
+
 test('a finger scrolls over a plot, and a tap shows the values', async () => {
   const { page, expect_no_faults } = await open_motion(390);
   const box = await find_plot(page, 'joint-angles');
