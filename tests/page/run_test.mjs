@@ -304,7 +304,20 @@ for (const width of [390, 1280]) {
       near.length >= 4 && near.some((row) => Math.abs(row[1] - angle) < 0.5),
       `${angle} is not one of ${near.map((row) => row[1])}`,
     );
-    // Now the pointer is over a button.
+    // The strip of the replay takes part: its line is at the same share of the case.
+    const again = await find_plot(page, 'joint-torques');
+    const strip = await page.locator('.replay-strip').boundingBox();
+    const whole_s = (await page.evaluate(() => Number(document.querySelector('.replay-scrub').max))) / 100;
+    await page.mouse.move(again.x + again.width * 0.6, again.y + again.height * 0.6);
+    const mark = await page.locator('.replay-pointer').evaluate((one) => one.getBoundingClientRect().left);
+    const expected = strip.x + 62 + (Number(time) / whole_s) * (strip.width - 74);
+    assert.ok(Math.abs(mark - expected) <= 1.5, `the line of the strip is at ${mark}, not ${expected}`);
+    await page.locator('.replay-strip').scrollIntoViewIfNeeded();
+    const seen = await page.locator('.replay-strip').boundingBox();
+    await page.mouse.move(seen.x + 62 + 0.25 * (seen.width - 74), seen.y + 40);
+    const [[, pointed]] = await get_readings(page, 'joint-errors');
+    assert.ok(Math.abs(Number(pointed) - 0.25 * whole_s) < 0.02 * whole_s, `${pointed} s is not a quarter of ${whole_s} s`);
+    await page.mouse.move(seen.x + seen.width / 2, seen.y + seen.height + 12);
     assert.equal(await page.locator('.readings').count(), 0);
     expect_no_faults();
     await page.close();

@@ -16,6 +16,11 @@ export interface Clock {
   listen(on_change: (change: Change) => void): () => void; // returns the function that removes the listener
 }
 
+// Returns the key of the time of a replay's case.
+export function make_time_key(replay: string, case_id: string): string {
+  return `time ${replay} ${case_id}`;
+}
+
 export function make_clock(): Clock {
   const listeners: ((change: Change) => void)[] = [];
   const zooms = new Map<string, Range>();

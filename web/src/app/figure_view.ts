@@ -14,7 +14,7 @@ import { download } from './download';
 import { add_gestures, find_panel } from './gestures';
 import { make_provenance } from './provenance';
 import { show_table } from './table_view';
-import type { Change, Clock } from './clock';
+import { make_time_key, type Change, type Clock } from './clock';
 import type { View } from './view';
 
 interface Hovered {
@@ -143,7 +143,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
   function get_key(): string {
     return figure.time === undefined
       ? `figure ${figure.id} ${JSON.stringify(picked)}`
-      : `time ${figure.time.replay} ${figure.time.case(picked)}`;
+      : make_time_key(figure.time.replay, figure.time.case(picked));
   }
 
   // Returns the part of the shared abscissa that a panel shows. Its own abscissa begins with it.

@@ -3,7 +3,7 @@ import type { Look } from '../charts/look';
 import type { Fact } from '../data';
 import type { Item, Page, Tab } from '../model';
 import { make_replay, type ReplayView } from '../replay/replay';
-import { make_clock, type Clock } from './clock';
+import { make_clock, make_time_key, type Clock } from './clock';
 import { make, make_button } from './dom';
 import { make_figure_view } from './figure_view';
 import { make_summary_view } from './summary_view';
@@ -32,6 +32,7 @@ function make_replay_view(id: string, title: string, page: Page, item: Item, loo
   const sets = item.kind === 'replay' ? item.sets : [];
   const replay: ReplayView = make_replay(host, page.data.robots, sets, look, {
     on_time: (set, case_id, time_s) => clock.set(set, case_id, time_s),
+    on_point: (set, case_id, time_s) => clock.point(make_time_key(set, case_id), time_s),
   });
   const follow = (): void => {
     const state = replay.state;
@@ -43,7 +44,14 @@ function make_replay_view(id: string, title: string, page: Page, item: Item, loo
     }
   };
   follow(); // the reader may return from another tab
-  const stop = clock.listen((change) => (change === 'time' ? follow() : undefined));
+  const stop = clock.listen((change) => {
+    if (change === 'time') {
+      follow();
+    } else if (change === 'pointer') {
+      const is_here = clock.pointer?.key === make_time_key(replay.state.set, replay.state.case);
+      replay.set_pointer(is_here ? (clock.pointer?.at ?? null) : null);
+    }
+  });
   (window as unknown as { armwright_replay?: ReplayView }).armwright_replay = replay;
   return {
     element: make('section', { class: 'card full', id: 'figure-' + id, 'data-figure': id }, make('h3', {}, title), host),

@@ -30,6 +30,7 @@ export interface ReplayState {
 export interface ReplayView {
   set_time(time_s: number): void; // within the case that is shown; does not call on_time
   choose(set: string, case_id: string): void; // does nothing if the set or case does not exist
+  set_pointer(time_s: number | null): void; // marks a time that the reader points at; null: none
   set_look(look: Look): void;
   dispose(): void;
   readonly state: ReplayState;
@@ -38,6 +39,8 @@ export interface ReplayView {
 export interface ReplayEvents {
   // Called when the reader, or playing, has changed the time or the case.
   on_time?(set: string, case_id: string, time_s: number): void;
+  // Called when the reader points at a time, and with null when the pointer has left.
+  on_point?(set: string, case_id: string, time_s: number | null): void;
 }
 
 const kSpeeds = ['0.1', '0.25', '0.5', '1', '2', '4'];
@@ -91,7 +94,10 @@ class Replay implements ReplayView {
     this.events = events;
     this.scale = make_colour_scale([], look.theme);
     this.stage = make_stage(() => this.schedule());
-    this.strip = new Strip((moment) => this.seek(moment));
+    this.strip = new Strip(
+      (moment) => this.seek(moment),
+      (moment) => this.point(moment),
+    );
     this.state = {
       set: '',
       case: '',
@@ -130,6 +136,10 @@ class Replay implements ReplayView {
     if (set !== undefined && replay !== undefined && (set_id !== this.state.set || case_id !== this.state.case)) {
       this.show_case(set, replay);
     }
+  }
+
+  set_pointer(time_s: number | null): void {
+    this.strip.set_pointer(time_s === null || this.scenario === null ? null : time_s / this.scenario.period_s);
   }
 
   set_look(look: Look): void {
@@ -294,6 +304,11 @@ class Replay implements ReplayView {
 
   private tell(): void {
     this.events.on_time?.(this.state.set, this.state.case, this.state.time_s);
+  }
+
+  private point(moment: number | null): void {
+    const time_s = moment === null || this.scenario === null ? null : moment * this.scenario.period_s;
+    this.events.on_point?.(this.state.set, this.state.case, time_s);
   }
 
   private seek(moment: number): void {
