@@ -514,8 +514,10 @@ export interface ReproductionData extends PageBase {
     median_m: number | null;
     p95_m: number | null;
     worst_m: number | null;
+    standard_error_m: number | null; // of the mean
     failures: number;
     torque_n_m: number;
+    reason: string; // why our numbers may differ from the published ones; "" if it is not known
     command: string;
   }[];
   // The designs that were optimized again, because the thesis does not give them.
@@ -526,6 +528,7 @@ export interface ReproductionData extends PageBase {
     mean_m: number | null;
     torque_n_m: number;
     published_torque_n_m: number | null;
+    reason: string; // as in rows
     folder: string;
     command: string;
   }[];
