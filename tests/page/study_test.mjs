@@ -69,6 +69,62 @@ test('the verdict is folded away, and opened it is word for word as in its file'
   await page.close();
 });
 
+test('a term is explained to the pointer, the keyboard and a finger', async () => {
+  const { page, expect_no_faults } = await open_study();
+  await open_tab(page, 'problem-q1-complex');
+  const caption = page.locator('[data-figure=pairs-table-q1-complex] .caption');
+  const term = caption.locator('.term', { hasText: 'A12' });
+  const meaning = page.getByRole('tooltip');
+  await term.scrollIntoViewIfNeeded();
+  assert.equal(await meaning.count(), 0);
+  await term.hover();
+  assert.match(await meaning.innerText(), /^A12 The probability that a run of one optimizer is better/);
+  const [at, on] = [await meaning.boundingBox(), await term.boundingBox()];
+  assert.ok(at.y >= on.y + on.height || at.y + at.height <= on.y, 'the meaning covers its term');
+  // The pointer may go to the meaning, and back to where nothing is explained.
+  await meaning.hover();
+  assert.equal(await meaning.count(), 1);
+  await page.mouse.move(2, 2);
+  await meaning.waitFor({ state: 'hidden' });
+
+  await term.focus();
+  assert.match(await meaning.innerText(), /^A12 /);
+  assert.equal(await term.getAttribute('aria-describedby'), await meaning.getAttribute('id'));
+  await page.keyboard.press('Escape');
+  assert.equal(await meaning.count(), 0);
+  await page.keyboard.press('Shift+Tab');
+  assert.match(await meaning.innerText(), /^Holm's correction /);
+  await page.keyboard.press('Escape');
+
+  await term.dispatchEvent('click'); // a finger on a system that gives buttons no focus
+  assert.match(await meaning.innerText(), /^A12 /);
+  await page.locator('h1').click();
+  assert.equal(await meaning.count(), 0);
+  expect_no_faults();
+  await page.close();
+});
+
+test('headings explain their terms and still sort', async () => {
+  const { page, expect_no_faults } = await open_study();
+  await open_tab(page, 'problem-q1-complex');
+  const table = page.locator('[data-figure=ranking-q1-complex]');
+  const heading = table.locator('th').getByRole('button', { name: 'mean rank' });
+  await heading.click();
+  assert.match(await page.getByRole('tooltip').innerText(), /^rank of an optimizer Its place among the optimizers/);
+  assert.equal(await table.locator('th[aria-sort=ascending]').innerText(), await heading.innerText());
+  await page.keyboard.press('Escape');
+  await page.locator('[data-figure=convergence-q1-complex]').getByRole('button', { name: 'Table' }).click();
+  await page.locator('dialog').getByRole('button', { name: 'lower quartile' }).focus();
+  assert.match(await page.getByRole('tooltip').innerText(), /^quartiles /);
+  await page.keyboard.press('Escape');
+  assert.equal(await page.getByRole('tooltip').count(), 0);
+  assert.equal(await page.locator('dialog').count(), 1, 'the first Escape only hides the meaning');
+  await page.keyboard.press('Escape');
+  assert.equal(await page.locator('dialog').count(), 0);
+  expect_no_faults();
+  await page.close();
+});
+
 test('a printed page shows the folded verdict', async () => {
   const { page, expect_no_faults } = await open_study();
   await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));

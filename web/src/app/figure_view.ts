@@ -11,6 +11,7 @@ import { make, make_button, make_select } from './dom';
 import { download } from './download';
 import { make_provenance } from './provenance';
 import { show_table } from './table_view';
+import { make_text } from './term_view';
 import type { Clock } from './clock';
 import type { View } from './view';
 
@@ -194,7 +195,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
       { title: 'Download this figure' },
     ),
   );
-  const caption = make('figcaption', {}, figure.caption);
+  const caption = make('figcaption', {}, ...make_text(figure.caption));
   const element = make(
     'figure',
     { class: figure.width === 'full' ? 'card full' : 'card', id: 'figure-' + figure.id, 'data-figure': figure.id },
@@ -232,8 +233,10 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
       if (item.kind !== 'figure' || choices_of(item) !== choices_of(figure)) {
         return false;
       }
+      if (item.caption !== figure.caption) {
+        caption.replaceChildren(...make_text(item.caption));
+      }
       figure = item;
-      caption.textContent = item.caption;
       draw(true);
       return true;
     },

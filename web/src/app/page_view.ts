@@ -8,6 +8,7 @@ import { make, make_button } from './dom';
 import { make_figure_view } from './figure_view';
 import { make_summary_view } from './summary_view';
 import { make_table_view } from './table_view';
+import { make_text } from './term_view';
 import { make_text_view } from './text_view';
 import type { View } from './view';
 
@@ -17,7 +18,7 @@ function make_facts(facts: Fact[]): HTMLElement {
   const list = make('dl', { class: 'facts' });
   for (const fact of facts) {
     const shape = fact.value.length > kLongFact ? 'long' : 'short';
-    list.append(make('div', { class: shape }, make('dt', {}, fact.label), make('dd', {}, fact.value)));
+    list.append(make('div', { class: shape }, make('dt', {}, ...make_text(fact.label)), make('dd', {}, fact.value)));
   }
   return list;
 }
