@@ -27,7 +27,17 @@ async function open_tab_of(page, figure) {
 test('every tab of a comparison has its figures', async () => {
   const { page, expect_no_faults } = await open_study();
   const found = await check_every_tab(page);
-  for (const figure of ['convergence', 'runtime-ecdf', 'values', 'pairs', 'ranks', 'parallel', 'cost-quality', 'data-profile']) {
+  for (const figure of [
+    'convergence',
+    'runtime-ecdf',
+    'values',
+    'pairs',
+    'ranks',
+    'parallel',
+    'cost-quality',
+    'pooled-ecdf',
+    'data-profile',
+  ]) {
     assert.ok(
       found.some((name) => name.startsWith(figure)),
       `${figure} is missing; there are ${found.join(', ')}`,
@@ -69,12 +79,50 @@ test('the verdict is folded away, and opened it is word for word as in its file'
   await page.close();
 });
 
+test('one filter applies to all tabs, and survives a change of the tab', async () => {
+  const { page, expect_no_faults } = await open_study();
+  const filter = page.locator('.filter');
+  assert.equal(await filter.locator('summary').innerText(), '4 of 4 optimizers are shown.');
+  assert.equal(await filter.locator('input').first().isVisible(), false);
+  await filter.locator('summary').click();
+  await filter.getByRole('searchbox').fill('cma nlopt:*');
+  const expect_shown = async (sentence, present, absent) => {
+    assert.equal(await filter.locator('summary').innerText(), sentence);
+    const texts = page.locator('main svg text');
+    await page.waitForFunction(
+      (name) => Array.from(document.querySelectorAll('main svg text')).some((text) => text.textContent === name),
+      present,
+    );
+    await page.waitForFunction(
+      (name) => Array.from(document.querySelectorAll('main svg text')).every((text) => text.textContent !== name),
+      absent,
+    );
+    assert.ok((await texts.count()) > 0);
+    const cells = await page.locator('main td').allInnerTexts();
+    assert.ok(cells.includes(present) && !cells.includes(absent), cells.slice(0, 20).join(', '));
+  };
+  const sentence = '2 of 4 optimizers are shown.';
+  await expect_shown(sentence, 'nlopt:bobyqa', 'ga');
+  await open_tab(page, 'problem-q2-e6');
+  await expect_shown(sentence, 'nlopt:bobyqa', 'ga');
+  assert.equal(await filter.getByRole('searchbox').inputValue(), 'cma nlopt:*');
+  // A family less, and all names again.
+  await filter.getByRole('searchbox').fill('');
+  await filter.getByRole('checkbox', { name: 'nlopt (1)' }).click();
+  await expect_shown('3 of 4 optimizers are shown.', 'ga', 'nlopt:bobyqa');
+  await filter.getByRole('searchbox').fill('zzz');
+  assert.equal(await filter.locator('summary').innerText(), '4 of 4 optimizers are shown, because no name matches.');
+  expect_no_faults();
+  await page.close();
+});
+
 test('a term is explained to the pointer, the keyboard and a finger', async () => {
   const { page, expect_no_faults } = await open_study();
   await open_tab(page, 'problem-q1-complex');
   const caption = page.locator('[data-figure=pairs-table-q1-complex] .caption');
   const term = caption.locator('.term', { hasText: 'A12' });
   const meaning = page.getByRole('tooltip');
+  await page.mouse.move(2, 2); // on nothing, wherever the page is scrolled to
   await term.scrollIntoViewIfNeeded();
   assert.equal(await meaning.count(), 0);
   await term.hover();

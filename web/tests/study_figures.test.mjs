@@ -166,6 +166,42 @@ test('sixteen optimizers differ in colour, dash or symbol', () => {
   }
 });
 
+test('the pairs of all problems are pooled, and each problem can be chosen', () => {
+  const make_problem = (targets, checkpoints, ecdfs) => ({
+    targets: Array.from({ length: targets }, (_, i) => i),
+    checkpoints,
+    results: ecdfs.map((ecdf) => ({ ecdf })),
+  });
+  const pooled = study.pool_ecdfs([
+    make_problem(10, [10, 100, 1000], [[0, 0.5, 1], [0, 0, 0.1]]), // prettier-ignore
+    make_problem(30, [20, 100], [[0.2, 0.4], [0, 0]]), // prettier-ignore
+  ]);
+  assert.deepEqual(pooled.checkpoints, [10, 20, 100, 1000]);
+  // 10 pairs per run on the first problem and 30 on the second one.
+  const expected = [
+    [0, 6 / 40, 17 / 40, 22 / 40],
+    [0, 0, 0, 1 / 40],
+  ];
+  pooled.shares.forEach((shares, o) => shares.forEach((share, i) => assert.ok(Math.abs(share - expected[o][i]) < 1e-15, `${o} ${i}`)));
+
+  const data = study.make_study_data({ optimizers: 3, replicates: 4, problems: 3 });
+  const figure = find(study.make_study_tabs(data), 'pooled-ecdf');
+  assert.deepEqual(
+    figure.choices[0].options.map((option) => option.label),
+    ['all 3 problems', 'Q1 problem 1', 'Q1 problem 2', 'Q1 problem 3'],
+  );
+  assert.match(figure.caption, /pairs of 3 problems that are reached/);
+  const single = figure.table({ problem: '1' }).rows.filter((row) => row[0] === data.optimizers[0].label);
+  assert.deepEqual(
+    single.map((row) => row[2]),
+    data.problems[1].results[0].ecdf,
+  );
+  data.problems[0].missing = 1;
+  assert.match(find(study.make_study_tabs(data), 'pooled-ecdf').caption, /of 2 problems .*Problems with missing runs are left out/);
+  data.problems[1].missing = 1;
+  assert.equal(find(study.make_study_tabs(data), 'pooled-ecdf'), undefined);
+});
+
 test('a profile opens where something is seen', () => {
   const data = study.make_study_data({ optimizers: 3, replicates: 4, problems: 2 });
   const empty = data.optimizers.map(() => data.overall.kappas.map(() => 0));

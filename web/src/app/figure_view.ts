@@ -51,12 +51,18 @@ function describe_point(hovered: Hovered | Hovered[], columns: Column[]): HTMLEl
   return box;
 }
 
-// Returns `option` with the series switched on that the reader has chosen, so that a new drawing
-// keeps the choice.
+interface Legend {
+  data?: unknown[];
+  selected?: Record<string, boolean>;
+}
+
+// Returns `option` with the series switched on that the reader has chosen, so that a new drawing of
+// the same series keeps the choice.
 function keep_selection(chart: EChartsType, option: EChartsOption): EChartsOption {
-  const before = (chart.getOption() as { legend?: { selected?: Record<string, boolean> }[] } | undefined)?.legend?.[0]?.selected;
-  const legend = (option as { legend?: object }).legend;
-  return before === undefined || legend === undefined ? option : { ...option, legend: { ...legend, selected: before } };
+  const before = (chart.getOption() as { legend?: Legend[] } | undefined)?.legend?.[0];
+  const legend = (option as { legend?: Legend }).legend;
+  const is_same = before !== undefined && legend !== undefined && JSON.stringify(before.data) === JSON.stringify(legend.data);
+  return is_same && before.selected !== undefined ? { ...option, legend: { ...legend, selected: before.selected } } : option;
 }
 
 export function make_figure_view(first: Figure, look: Look, clock: Clock): View {
@@ -237,6 +243,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
         caption.replaceChildren(...make_text(item.caption));
       }
       figure = item;
+      element.classList.toggle('full', item.width === 'full');
       draw(true);
       return true;
     },

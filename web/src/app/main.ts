@@ -2,7 +2,6 @@
 // while a study runs, and shows them.
 import { kDark, kLight, type Look } from '../charts/look';
 import type { PageData } from '../data';
-import { make_page } from '../figures/page';
 import '../replay/replay.css';
 import './page.css';
 import './summary.css';
@@ -34,9 +33,9 @@ function start(): void {
       view.set_look(apply());
     },
   });
-  view.show(make_page(JSON.parse(data.textContent ?? '') as PageData));
+  view.show(JSON.parse(data.textContent ?? '') as PageData);
   if (document.documentElement.hasAttribute('data-live')) {
-    follow((next) => view.show(make_page(next)));
+    follow((next) => view.show(next));
   }
 }
 

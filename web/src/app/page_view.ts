@@ -1,17 +1,20 @@
 // The view of the whole page: the head, the tabs, and the open tab.
 import type { Look } from '../charts/look';
-import type { Fact } from '../data';
+import type { Fact, PageData } from '../data';
+import { make_page } from '../figures/page';
 import type { Item, Page, Tab } from '../model';
 import { make_replay, type ReplayView } from '../replay/replay';
 import { make_clock, type Clock } from './clock';
 import { make, make_button } from './dom';
 import { make_figure_view } from './figure_view';
+import { make_filter_view } from './filter_view';
 import { make_summary_view } from './summary_view';
 import { make_table_view } from './table_view';
 import { make_text } from './term_view';
 import { make_text_view } from './text_view';
 import type { View } from './view';
 
+const kFewestToFilter = 3; // optimizers
 const kLongFact = 100; // characters; a longer value has all columns of the list
 
 function make_facts(facts: Fact[]): HTMLElement {
@@ -74,7 +77,7 @@ function make_view(page: Page, item: Item, look: Look, clock: Clock): View {
 }
 
 export interface PageView {
-  show(page: Page): void;
+  show(data: PageData): void;
   set_look(look: Look): void;
 }
 
@@ -88,6 +91,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
   const clock = make_clock();
   let look = first_look;
   let page: Page | null = null;
+  let shown_data: PageData | null = null;
   let views: View[] = [];
   let open = '';
 
@@ -95,6 +99,11 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
   const subtitle = make('p', { class: 'subtitle' });
   const state = make('p', { class: 'state', role: 'status' });
   const notes = make('ul', { class: 'notes' });
+  const filter = make_filter_view(() => {
+    if (shown_data !== null) {
+      show(shown_data);
+    }
+  });
   const list = make('div', { role: 'tablist', 'aria-label': 'Sections' });
   const panel = make('main', { role: 'tabpanel', tabindex: '-1' });
   const foot = make('footer');
@@ -107,6 +116,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
       make_button('Light / dark', events.toggle_theme, { class: 'theme', 'aria-label': 'Light / dark' }),
     ),
     notes,
+    filter.element,
     list,
     panel,
     foot,
@@ -220,25 +230,29 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
   });
   window.addEventListener('hashchange', () => choose(decodeURIComponent(location.hash.slice(1)), false));
 
+  function show(data: PageData): void {
+    shown_data = data;
+    filter.element.hidden = data.kind !== 'study' || data.optimizers.length < kFewestToFilter;
+    const next = make_page(data, data.kind === 'study' ? filter.apply(data) : undefined);
+    page = next;
+    document.title = data.title;
+    title.textContent = data.title;
+    subtitle.textContent = data.subtitle;
+    state.textContent = data.progress === null ? '' : `${data.progress.done} of ${data.progress.total} ${data.progress.unit}`;
+    notes.replaceChildren(...data.notes.map((note) => make('li', {}, note)));
+    const shown = next.tabs.find((tab) => tab.id === open);
+    foot.replaceChildren(
+      make('p', {}, `armwright ${data.program.version} (${data.program.commit}). Made by `, make('code', {}, data.command)),
+      make('p', {}, 'Folder: ', make('code', {}, data.folder)),
+    );
+    if (shown === undefined || !same_tabs(next.tabs) || !update_items(shown)) {
+      list.replaceChildren(...next.tabs.map(make_tab_button));
+      choose(open || decodeURIComponent(location.hash.slice(1)), false);
+    }
+  }
+
   return {
-    show(next: Page) {
-      page = next;
-      const { data } = next;
-      document.title = data.title;
-      title.textContent = data.title;
-      subtitle.textContent = data.subtitle;
-      state.textContent = data.progress === null ? '' : `${data.progress.done} of ${data.progress.total} ${data.progress.unit}`;
-      notes.replaceChildren(...data.notes.map((note) => make('li', {}, note)));
-      const shown = next.tabs.find((tab) => tab.id === open);
-      foot.replaceChildren(
-        make('p', {}, `armwright ${data.program.version} (${data.program.commit}). Made by `, make('code', {}, data.command)),
-        make('p', {}, 'Folder: ', make('code', {}, data.folder)),
-      );
-      if (shown === undefined || !same_tabs(next.tabs) || !update_items(shown)) {
-        list.replaceChildren(...next.tabs.map(make_tab_button));
-        choose(open || decodeURIComponent(location.hash.slice(1)), false);
-      }
-    },
+    show,
     set_look(next: Look) {
       look = next;
       views.forEach((view) => view.set_look(next));

@@ -5,17 +5,18 @@ import { make_reproduction_tabs } from './reproduction_page';
 import { make_run_tabs } from './run_page';
 import { make_study_tabs } from './study_page';
 
-function make_tabs(data: PageData): Tab[] {
+function make_tabs(data: PageData, shown?: number[]): Tab[] {
   switch (data.kind) {
     case 'run':
       return make_run_tabs(data);
     case 'study':
-      return make_study_tabs(data);
+      return make_study_tabs(data, shown);
     case 'reproduction':
       return make_reproduction_tabs(data);
   }
 }
 
-export function make_page(data: PageData): Page {
-  return { data, tabs: make_tabs(data) };
+// `shown` are the optimizers of a comparison's figures and tables, by index; without it, all are shown.
+export function make_page(data: PageData, shown?: number[]): Page {
+  return { data, tabs: make_tabs(data, shown) };
 }

@@ -126,7 +126,7 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
   );
   // The best rank has the strongest colour.
   const get_fill = (rank: number | null): string =>
-    rank === null ? look.background : mix(look.background, look.series[0], 1 - (rank - 1) / Math.max(1, order.length - 0.4));
+    rank === null ? look.background : mix(look.background, look.series[0], 1 - (rank - 1) / Math.max(1, scope.names.length - 0.4));
   const text = (x: number, y: number, words: string, fill: string, more: Part = {}): Part => ({
     type: 'text',
     style: { x, y, text: words, fill, font: kSize + 'px ' + look.font, textAlign: 'left', textVerticalAlign: 'middle', ...more },
@@ -225,8 +225,8 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
   });
 }
 
-function get_shown_marks({ standings }: Grid): Mark[] {
-  return kMarks.filter((mark) => standings.some((one) => one.standings.indexOf(mark.standing) >= 0));
+function get_shown_marks({ standings, order }: Grid): Mark[] {
+  return kMarks.filter((mark) => standings.some((one) => order.some((o) => one.standings[o] === mark.standing)));
 }
 
 // Returns the number of lines for the names of problems: as many as they need in the usual width of
@@ -247,8 +247,8 @@ export function make_standing_grid(scope: Scope): Figure | null {
     return null;
   }
   const standings = scope.problems.map((problem) => find_standing(scope.data, problem));
-  const grid: Grid = { standings, order: order_by_standing(scope, standings) };
-  const row_height = scope.names.length > 16 ? 18 : 21;
+  const grid: Grid = { standings, order: order_by_standing(scope, standings).filter((o) => scope.shown.indexOf(o) >= 0) };
+  const row_height = scope.shown.length > 16 ? 18 : 21;
   return {
     kind: 'figure',
     id: 'standing',
@@ -260,7 +260,7 @@ export function make_standing_grid(scope: Scope): Figure | null {
       (scope.problems.length > kMostNamed ? 'In a narrow window the problems have numbers, in the order of the study. ' : '') +
       describe_size(scope),
     width: 'full',
-    height: kTop + get_head_height(scope) + row_height * scope.names.length + 4,
+    height: kTop + get_head_height(scope) + row_height * scope.shown.length + 4,
     draw: (look) => draw_grid(look, scope, grid),
     table: () => ({
       columns: [

@@ -32,6 +32,11 @@ interface Square {
   marked: boolean;
 }
 
+// Returns the pairs of shown optimizers.
+function list_pairs(scope: Scope, problem: StudyProblem): StudyPair[] {
+  return problem.pairs.filter((pair) => scope.shown.indexOf(pair.a) >= 0 && scope.shown.indexOf(pair.b) >= 0);
+}
+
 function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOption {
   const order = get_order(scope, problem);
   const names = order.map((o) => scope.names[o]);
@@ -39,7 +44,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
   order.forEach((o, i) => (place[o] = i));
   const squares: Square[] = [];
   const data: Part[] = [];
-  problem.pairs.forEach((pair) => {
+  list_pairs(scope, problem).forEach((pair) => {
     const first_is_a = place[pair.a] < place[pair.b];
     const [better, worse] = first_is_a ? [pair.a, pair.b] : [pair.b, pair.a];
     const a12 = first_is_a ? pair.a12 : 1 - pair.a12;
@@ -160,7 +165,7 @@ export function tabulate_pairs(scope: Scope, problems: StudyProblem[]): DataTabl
   const rows = problems.reduce(
     (all, problem) =>
       all.concat(
-        problem.pairs.map((pair) =>
+        list_pairs(scope, problem).map((pair) =>
           (many ? [problem.label as string | number] : []).concat([
             scope.names[pair.a],
             scope.names[pair.b],
@@ -205,8 +210,8 @@ export function make_pairs(all: Scope): Figure | null {
       'Values that are significant at 0.05 are bold and underlined. Rows and columns are ordered best first. ' +
       'A pair that is not told apart need not be equal: more replicates may show a difference. ' +
       describe_size(scope),
-    height: Math.max(380, 140 + 20 * scope.names.length),
-    width: scope.names.length > 8 ? 'full' : 'half',
+    height: Math.max(380, 140 + 20 * scope.shown.length),
+    width: scope.shown.length > 8 ? 'full' : 'half',
     choices: make_problem_choices(scope),
     draw: (look, picked) => draw_pairs(look, scope, get_problem(scope, picked)),
     table: (picked) => tabulate_pairs(scope, [get_problem(scope, picked)]),

@@ -275,10 +275,7 @@ export function make_overall_table(scope: Scope): TableItem | null {
       digits: 4,
     })) as never[],
   );
-  const order = sort_by(
-    scope.names.map((_, i) => i),
-    (i) => overall.mean_ranks[i] ?? Infinity,
-  );
+  const order = sort_by(scope.shown, (i) => overall.mean_ranks[i] ?? Infinity);
   return {
     kind: 'table',
     id: 'overall',
