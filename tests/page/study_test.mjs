@@ -173,6 +173,36 @@ test('headings explain their terms and still sort', async () => {
   await page.close();
 });
 
+test('each design has one name on all pages', async () => {
+  for (const name of ['run', 'front', 'study', 'reproduction']) {
+    const { page, expect_no_faults } = await open_page(browser, join(kFolder, `${name}.html`));
+    const data = JSON.parse(await page.locator('#data').evaluate((element) => element.textContent));
+    const names = new Set([
+      ...data.replays.flatMap((set) => set.designs.map((design) => design.name)),
+      ...(data.arm?.designs ?? []).map((design) => design.name),
+      ...(data.arm?.response.series ?? []).map((series) => series.name),
+      ...(data.arm?.sweep?.series ?? data.sweep?.series ?? []).map((series) => series.name),
+      ...(data.test?.designs ?? []).map((design) => design.name),
+    ]);
+    const own = (data.optimizers ?? []).map((one) => one.label);
+    const usual = (one) => ['winner', 'base controllers', 'published'].includes(one) || own.some((label) => one.startsWith(label));
+    const wrong = [...names].filter((one) => !(name === 'reproduction' ? /^(A\.([5-9]|1[01])|base controllers)$/.test(one) : usual(one)));
+    assert.deepEqual(wrong, [], `names of designs on the page ${name}`);
+    assert.ok(names.has('base controllers'), `${name}: ${[...names].join(', ')}`);
+    // No table has the ids that the data use inside, or the older names.
+    for (const tab of await list_tabs(page)) {
+      await open_tab(page, tab);
+      const texts = await page.$$eval('main td, main th, main svg text', (all) => all.map((one) => one.textContent));
+      assert.deepEqual(
+        texts.filter((text) => /^(base|start design|where the problem starts|thesis, Table A\.\d+)$/.test(text)),
+        [],
+      );
+    }
+    expect_no_faults();
+    await page.close();
+  }
+});
+
 test('a printed page shows the folded verdict', async () => {
   const { page, expect_no_faults } = await open_study();
   await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));

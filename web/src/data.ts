@@ -86,7 +86,7 @@ export interface Robot {
 
 export interface DesignInfo {
   id: string;
-  name: string; // "winner", "base controllers", "thesis, Table A.5"
+  name: string; // "winner", "base controllers", "published"
   total_torque_n_m: number | null;
   effort_limits: [number, number][]; // one per joint
 }
@@ -307,7 +307,8 @@ export interface ArmEvidence {
   parameters: { name: string; unit: string; is_variable: boolean; at_bound: string; values: (number | null)[] }[];
   // The results of each design on the test set, and the published values.
   results: {
-    design: string;
+    design: string; // the id of one of `designs`
+    source: string; // "thesis, Table A.5", or "" if its file names none
     mean_m: number | null;
     median_m: number | null;
     p95_m: number | null;

@@ -17,6 +17,7 @@ namespace armwright {
 struct ShownDesign {
   NamedDesign named;
   std::string argument;  // its name or file for `armwright evaluate`; empty: it has neither
+  std::string source;    // "thesis, Table A.5"; empty if its file names none
   std::optional<double> published_mean_m;
   std::optional<double> published_torque_n_m;
   std::string where;                    // the source of the published numbers
