@@ -141,6 +141,18 @@ test('up to twelve optimizers are all drawn at first', () => {
   }
 });
 
+test('up to four optimizers have bands of quartiles', () => {
+  const data = study.make_study_data({ optimizers: 12, replicates: 6, problems: 1, infinite: 'none' });
+  const draw = (shown) => find(study.make_study_tabs(data, shown), 'convergence');
+  const count_bands = (figure) =>
+    figure.draw(study.kLight, {}).series.filter((one) => one.type === 'custom' && one.name !== undefined).length;
+  assert.equal(count_bands(draw(undefined)), 0);
+  assert.match(draw(undefined).caption, /for at most 4 optimizers; the table has the quartiles of all/);
+  assert.equal(count_bands(draw([0, 1, 2, 3])), 4);
+  assert.match(draw([0, 1, 2, 3]).caption, /The band shows the quartiles/);
+  assert.equal(count_bands(draw([0, 1, 2, 3, 4])), 0);
+});
+
 test('sixteen optimizers differ in colour, dash or symbol', () => {
   const tabs = study.make_study_tabs(study.make_study_data({ optimizers: 16, replicates: 6, problems: 1, infinite: 'none' }));
   for (const look of [study.kLight, study.kDark]) {

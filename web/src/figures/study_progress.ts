@@ -30,6 +30,9 @@ import {
   split_rows,
 } from './study_parts';
 
+// With more curves the bands of the quartiles would hide each other.
+const kMostBands = 4;
+
 const kCasesAxis = 'simulated training cases';
 const kFirstOnes = (count: number) =>
   count > kMostAtFirst
@@ -44,7 +47,9 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
     return { q1: convert_all(curve.q1, unit), median: convert_all(curve.median, unit), q3: convert_all(curve.q3, unit) };
   });
   const drawn = curves.slice(0, kMostAtFirst);
-  const everything = (list: typeof curves) => list.reduce((all, one) => all.concat(one.q1, one.median, one.q3), [] as (number | null)[]);
+  const has_bands = order.length <= kMostBands;
+  const everything = (list: typeof curves) =>
+    list.reduce((all, one) => all.concat(one.median, has_bands ? one.q1.concat(one.q3) : []), [] as (number | null)[]);
   // The axis has room for all series that can be switched on.
   const y = make_scale(everything(curves.length > 2 * kMostAtFirst ? drawn : curves), true);
   const x = make_scale(problem.checkpoints, true);
@@ -59,7 +64,7 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
       // A quartile without a value is beyond the end of the axis.
       return low === null ? null : [cases, low, q3[i] ?? y.high * 10];
     });
-    split_rows(rows).forEach((piece) => bands.push(make_band(scope.names[o], piece, style.color)));
+    split_rows(has_bands ? rows : []).forEach((piece) => bands.push(make_band(scope.names[o], piece, style.color)));
     const points = problem.checkpoints.map((cases, i): Point => {
       const value = median[i] ?? null;
       const note =
@@ -118,7 +123,10 @@ export function make_convergence(scope: Scope): Figure {
     id: 'convergence' + scope.suffix,
     title: end_title(scope, 'Convergence'),
     caption:
-      'The value of the incumbents on the test set against the number of simulated training cases. The line is the median over replicates, and the band shows the quartiles. ' +
+      'The value of the incumbents on the test set against the number of simulated training cases. The line is the median over replicates. ' +
+      (scope.shown.length <= kMostBands
+        ? 'The band shows the quartiles. '
+        : 'Bands of the quartiles are drawn for at most ' + kMostBands + ' optimizers; the table has the quartiles of all. ') +
       'Designs are chosen in training and simulated again on the test set, so a curve may rise. Where a curve is missing, half of the runs have no value yet. ' +
       'The order of the optimizers at one budget says nothing about another budget. ' +
       describe_size(scope) +
