@@ -85,6 +85,7 @@ test('one filter applies to all tabs, and survives a change of the tab', async (
   assert.equal(await filter.locator('summary').innerText(), '4 of 4 optimizers are shown.');
   assert.equal(await filter.locator('input').first().isVisible(), false);
   await filter.locator('summary').click();
+  assert.equal(await filter.getByText('only the best 12').isVisible(), false); // there are four
   await filter.getByRole('searchbox').fill('cma nlopt:*');
   const expect_shown = async (sentence, present, absent) => {
     assert.equal(await filter.locator('summary').innerText(), sentence);

@@ -1,5 +1,6 @@
 // The choice of the optimizers that a comparison's page shows. It applies to all figures and tables
 // of all tabs, and it changes no rank and no test.
+import { shorten } from '../charts/names';
 import type { StudyData } from '../data';
 import { get_ranks, kMostAtFirst, sort_by } from '../figures/study_parts';
 import { make } from './dom';
@@ -94,7 +95,7 @@ export function make_filter_view(on_change: () => void): FilterView {
           filter.hidden = filter.hidden.filter((one) => one !== family).concat(box.checked ? [] : [family]);
           on_change();
         });
-        return make('label', {}, box, `${family} (${all.filter((one) => one === family).length})`);
+        return make('label', {}, box, `${shorten(family, 24)} (${all.filter((one) => one === family).length})`);
       }),
     );
   }
