@@ -169,7 +169,7 @@ test('headings explain their terms and still sort', async () => {
   assert.equal(await page.getByRole('tooltip').count(), 0);
   assert.equal(await page.locator('dialog').count(), 1, 'the first Escape only hides the meaning');
   await page.keyboard.press('Escape');
-  assert.equal(await page.locator('dialog').count(), 0);
+  await page.locator('dialog').waitFor({ state: 'detached' });
   expect_no_faults();
   await page.close();
 });

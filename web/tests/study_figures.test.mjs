@@ -594,6 +594,21 @@ test('the grid names the problems, or numbers them where they have no room', () 
   }
   assert.ok(few.includes('>Q1 problem<') && !few.includes('>Q1 problem 1<'), 'broken into two lines');
   assert.match(many.caption, /In a narrow window the problems have numbers/);
+  // Four names have two lines in a narrow window, between the legend and the cells.
+  const { option } = study.fit_width(find_grid(4).draw(study.kLight, {}), 290, 200);
+  const of_four = study.draw_svg(find_grid(4), study.kLight, {}, 290, 200);
+  const above = Array.from(of_four.matchAll(/ y="([\d.]+)"[^>]*>([^<]*)</g)).filter(
+    ([, y]) => y > 24 && y < find_grid(4).draw(study.kLight, {}).grid.top,
+  );
+  assert.equal(new Set(above.map(([, y]) => y)).size, 2, above.map(([, y, text]) => `${text} at ${y}`).join(', '));
+  assert.equal(
+    above
+      .map(([, , text]) => text)
+      .join('')
+      .replace(/ /g, ''),
+    'Q1problem1Q1problem2Q1problem3Q1problem4',
+  );
+  assert.ok(option.grid.top >= 4 + 14 + 5 + 2 * 13, `the cells begin at ${option.grid.top}`);
 });
 
 test('the verdict is folded away, whole', () => {

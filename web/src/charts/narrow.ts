@@ -113,7 +113,8 @@ function fit_panels(option: Part, grids: Part[], from: { width_px: number; heigh
 }
 
 // Returns the chart `drawn`, which is `height_px` high, for a place of `width_px`. A wide place gets it
-// unchanged. In a narrow one, the options in `narrow` of a grid replace those of the grid itself.
+// unchanged. In a narrow one, the options in `narrow` of a grid replace those of the grid itself;
+// its `head` is the height in pixels between the legend and the grid.
 export function fit_width(drawn: EChartsOption, width_px: number, height_px: number): FittedChart {
   if (width_px >= kNarrow_px || drawn.grid === undefined) {
     return { option: drawn, height_px };
@@ -128,12 +129,13 @@ export function fit_width(drawn: EChartsOption, width_px: number, height_px: num
   }
   const grids = Array.isArray(option.grid) ? (option.grid as Part[]) : [option.grid as Part];
   const top_px = to_px(grids[0].top, height_px);
-  const head_px = legend_px === 0 ? top_px : legend_px + kHead_px;
+  const narrow = (grids[0].narrow as Part | undefined) ?? {};
+  const head_px = legend_px === 0 ? top_px : legend_px + Number(narrow.head ?? kHead_px);
   if (grids.length > 1) {
     return fit_panels(option, grids, { width_px, height_px }, head_px);
   }
   const was_beside = shown?.orient === 'vertical' && shown.left === undefined && legend_px > 0;
-  const grid = { ...grids[0], ...((grids[0].narrow as Part | undefined) ?? {}) };
+  const grid = { ...grids[0], ...narrow };
   const left = to_px(grid.left, width_px);
   const right = was_beside ? kRight_px : to_px(grid.right, width_px);
   const scale = Math.min(1, (kMostMargin * width_px) / (left + right));

@@ -177,12 +177,13 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
       const width = get_width(box);
       const letters = Math.floor((width - 6) / (0.62 * kSize));
       const lines = count_head_lines(scope);
-      const children = labels.map((label, p) =>
-        text(box.x + (p + 0.5) * width, box.y - 5, letters < kFewestLetters ? String(p + 1) : shorten(label, letters * lines), look.text, {
+      const heads = labels.map((label, p) => (letters < kFewestLetters ? String(p + 1) : shorten(label, letters * lines)));
+      const children = heads.map((label, p) =>
+        text(box.x + (p + 0.5) * width, box.y - 5, label, look.text, {
           textAlign: 'center',
           textVerticalAlign: 'bottom',
           width: width - 6,
-          overflow: 'break',
+          overflow: needs_more_lines(label, letters, lines) ? 'breakAll' : 'break',
           lineHeight: kHeadLine,
         }),
       );
@@ -207,7 +208,7 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
   }));
   const side = (direction: 'x' | 'y'): Part => ({ type: 'value', show: false, min: 0, max: direction === 'x' ? columns : order.length });
   return make_chart(look, side('x'), side('y'), [cells, heads].concat(key), {
-    grid: { left: name_width + 14, right: 4, top: kTop + get_head_height(scope), bottom: 4 },
+    grid: { left: name_width + 14, right: 4, top: kTop + get_head_height(scope), bottom: 4, narrow: { head: get_head_height(scope) + 5 } },
     legend: {
       type: 'scroll',
       left: 4,
@@ -223,6 +224,21 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
       pageIconInactiveColor: look.grid,
     },
   });
+}
+
+// Returns whether the label needs more lines if it only breaks between words.
+function needs_more_lines(label: string, letters: number, lines: number): boolean {
+  let count = 1;
+  let used = 0; // letters of the last line
+  for (const word of label.split(' ')) {
+    if (word.length > letters) {
+      return true;
+    }
+    const goes_on = used > 0 && used + 1 + word.length <= letters;
+    count += used > 0 && !goes_on ? 1 : 0;
+    used = goes_on ? used + 1 + word.length : word.length;
+  }
+  return count > lines;
 }
 
 function get_shown_marks({ standings, order }: Grid): Mark[] {
