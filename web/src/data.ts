@@ -36,10 +36,21 @@ export interface PageBase {
   command: string; // the shell command that made the run or study
   finished: boolean;
   progress: { done: number; total: number; unit: string } | null; // null if it is finished
+  watched: Watched | null; // null unless `armwright watch` serves the page
   notes: string[]; // whole sentences: missing parts of the page with their reasons, and warnings
   facts: Fact[]; // about the run or study, in the order to show
   robots: Robot[];
   replays: ReplaySet[];
+}
+
+// The progress at the time when `armwright watch` made the page.
+export interface Watched {
+  simulations: number | null; // cases simulated so far; null for a reproduction
+  per_second: number | null; // simulations in the last minute; null while it is unknown
+  left_s: number | null; // estimated; null while it is unknown
+  running: { cell: string; process: string; done: number | null; total: number }[]; // cases of the cells that are running
+  failed_evaluations: number; // candidates with a simulation that failed
+  failures: { where: string; state: string; reason: string }[]; // cells, then the newest candidates
 }
 
 // ---------------------------------------------------------------- the arm

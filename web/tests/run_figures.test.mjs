@@ -4,6 +4,8 @@ import test from 'node:test';
 import { load } from './load.mjs';
 
 const {
+  describe_progress,
+  describe_time,
   draw_svg,
   find_saturated,
   get_initial_picks,
@@ -18,6 +20,7 @@ const {
 } = await load(`
   export { draw_svg, get_initial_picks } from './src/charts/svg';
   export { kDark, kLight } from './src/charts/look';
+  export { describe_progress, describe_time } from './src/figures/watched';
   export { make_page } from './src/figures/page';
   export { find_saturated } from './src/figures/joints';
   export { make_histogram } from './src/figures/test_errors';
@@ -373,4 +376,44 @@ test('the health card of a healthy winner, and of one that was not measured', ()
   health.failing = 'bad';
   health.failures = 2;
   assert.match(find(data, 'health').verdict.text, /^✗ The winner is not healthy: 2 of 500 test cases failed\. Not measured/);
+});
+
+// ---------------------------------------------------------------- a run in progress
+
+test('the words beside the progress bar say what is known', () => {
+  assert.deepEqual(describe_progress(make_run_data()), []);
+  const data = { ...make_run_data(), finished: false, progress: { done: 1999, total: 4000, unit: 'cases' } };
+  assert.deepEqual(describe_progress(data), ['1999 of 4000 cases (49 %)']);
+  data.watched = { simulations: 1999, per_second: null, left_s: null, running: [], failed_evaluations: 0, failures: [] };
+  assert.deepEqual(describe_progress(data), [
+    '1999 of 4000 cases (49 %)',
+    'time left: unknown yet',
+    'simulations per second: unknown yet',
+    'no candidate has failed',
+  ]);
+  data.watched = { ...data.watched, per_second: 12.345, left_s: 162, failed_evaluations: 1 };
+  assert.deepEqual(describe_progress(data).slice(1), [
+    'about 3 min left',
+    '12.3 simulations per second in the last minute',
+    '1 candidate has failed',
+  ]);
+  assert.deepEqual([0, 119.5, 7199, 7200, 12034].map(describe_time), ['0 s', '120 s', '120 min', '2 h', '3 h 21 min']);
+});
+
+test('a watched page has the running cells first and the failures after the headline', () => {
+  const data = { ...make_run_data(), finished: false, progress: { done: 0, total: 4, unit: 'cells' } };
+  const ids = () => make_page(data).tabs[0].items.map((item) => item.id);
+  const usual = ids();
+  data.watched = {
+    simulations: 9,
+    per_second: 1,
+    left_s: 1,
+    running: [{ cell: 'q1/ga/r01', process: 'process 7 on host', done: 25, total: 100 }],
+    failed_evaluations: 1,
+    failures: [{ where: 'evaluation 3', state: 'diverged', reason: 'joint_2 moves at 1e9 rad/s' }],
+  };
+  assert.deepEqual(ids(), ['running', usual[0], 'failures-so-far', ...usual.slice(1)]);
+  assert.deepEqual(find(data, 'running').table.rows, [['q1/ga/r01', 25, 100, 25, 'process 7 on host']]);
+  data.finished = true;
+  assert.deepEqual(ids(), usual);
 });

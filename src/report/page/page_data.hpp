@@ -12,11 +12,14 @@
 
 namespace armwright {
 
+class ProgressMeter;
+
 // How a page of any kind is made.
 struct PageOptions {
   unsigned jobs = 1;               // threads
   std::vector<std::string> cases;  // "test/2:17": replayed in addition to the usual cases
   bool simulate = true;  // false: parts that need a simulation are left out, and a note says so
+  ProgressMeter* meter = nullptr;  // set by `armwright watch`: the page shows the progress
 };
 
 // Each of the next four functions returns the JSON of a page, or nothing after a request to stop.

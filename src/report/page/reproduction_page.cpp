@@ -10,6 +10,7 @@
 #include "report/evidence/distance_response.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/signals.hpp"
+#include "report/page/progress_meter.hpp"
 #include "report/page/reproduction_replays.hpp"
 #include "study/run/design_evaluation.hpp"
 
@@ -78,6 +79,8 @@ class ReproductionPage {
             {"command", make_own_command()},
             {"finished", there == planned},
             {"progress", std::move(progress)},
+            {"watched", options.meter == nullptr ? json(nullptr)
+                                                 : options.meter->observe_results(there, planned)},
             {"notes", notes_},
             {"facts", make_facts()},
             {"robots", std::move(replays["robots"])},

@@ -64,11 +64,11 @@ TEST_F(ReproductionPageTest, HasAllKeysAndWhatWasComputed) {
   reproduce(small_.request());
   const std::string text = make_page();
   const json page = json::parse(text);
-  EXPECT_EQ(
-      get_keys(page),
-      (std::set<std::string>{"format", "kind", "title", "subtitle", "program", "folder", "command",
-                             "finished", "progress", "notes", "facts", "robots", "replays", "rows",
-                             "runs", "responses", "signals", "sweep", "momentary"}));
+  EXPECT_EQ(get_keys(page),
+            (std::set<std::string>{"format", "kind",      "title",    "subtitle", "program",
+                                   "folder", "command",   "finished", "progress", "watched",
+                                   "notes",  "facts",     "robots",   "replays",  "rows",
+                                   "runs",   "responses", "signals",  "sweep",    "momentary"}));
   EXPECT_EQ(page["kind"], "reproduction");
   EXPECT_EQ(page["finished"], true);
   EXPECT_TRUE(page["progress"].is_null());

@@ -34,9 +34,10 @@ function start(): void {
       view.set_look(apply());
     },
   });
-  view.show(make_page(JSON.parse(data.textContent ?? '') as PageData));
+  const first = JSON.parse(data.textContent ?? '') as PageData;
+  view.show(make_page(first));
   if (document.documentElement.hasAttribute('data-live')) {
-    follow((next) => view.show(make_page(next)));
+    follow(first.finished, (next) => view.show(make_page(next)));
   }
 }
 

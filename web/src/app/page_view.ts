@@ -6,6 +6,7 @@ import { make_replay, type ReplayView } from '../replay/replay';
 import { make_clock, type Clock } from './clock';
 import { make, make_button } from './dom';
 import { make_figure_view } from './figure_view';
+import { make_progress_view } from './progress_view';
 import { make_summary_view } from './summary_view';
 import { make_table_view } from './table_view';
 import { make_text_view } from './text_view';
@@ -93,6 +94,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
   const title = make('h1');
   const subtitle = make('p', { class: 'subtitle' });
   const state = make('p', { class: 'state', role: 'status' });
+  const progress = make_progress_view();
   const notes = make('ul', { class: 'notes' });
   const list = make('div', { role: 'tablist', 'aria-label': 'Sections' });
   const panel = make('main', { role: 'tabpanel', tabindex: '-1' });
@@ -105,6 +107,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
       state,
       make_button('Light / dark', events.toggle_theme, { class: 'theme', 'aria-label': 'Light / dark' }),
     ),
+    progress.element,
     notes,
     list,
     panel,
@@ -226,7 +229,8 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
       document.title = data.title;
       title.textContent = data.title;
       subtitle.textContent = data.subtitle;
-      state.textContent = data.progress === null ? '' : `${data.progress.done} of ${data.progress.total} ${data.progress.unit}`;
+      state.textContent = data.watched !== null && data.finished ? 'Finished' : '';
+      progress.show(data);
       notes.replaceChildren(...data.notes.map((note) => make('li', {}, note)));
       const shown = next.tabs.find((tab) => tab.id === open);
       foot.replaceChildren(

@@ -4,6 +4,7 @@ import type { Page, Tab } from '../model';
 import { make_reproduction_tabs } from './reproduction_page';
 import { make_run_tabs } from './run_page';
 import { make_study_tabs } from './study_page';
+import { add_watched_items } from './watched';
 
 function make_tabs(data: PageData): Tab[] {
   switch (data.kind) {
@@ -17,5 +18,6 @@ function make_tabs(data: PageData): Tab[] {
 }
 
 export function make_page(data: PageData): Page {
-  return { data, tabs: make_tabs(data) };
+  const [first, ...others] = make_tabs(data);
+  return { data, tabs: [{ ...first, items: add_watched_items(data, first.items) }, ...others] };
 }
