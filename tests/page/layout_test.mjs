@@ -219,7 +219,7 @@ async function check_page(name) {
   assert.ok(found.length === 0, `${found.length} faults:\n${found.slice(0, 40).join('\n')}`);
 }
 
-for (const name of ['run', 'study', 'reproduction', 'front']) {
+for (const name of ['run', 'study', 'reproduction', 'front', 'comparison', 'study-comparison']) {
   test(`the layout of the page "${name}" fits every width`, () => check_page(name));
 }
 

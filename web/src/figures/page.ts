@@ -1,6 +1,8 @@
 // Makes a page from its data. This is the only entry to the figures.
 import type { PageData } from '../data';
 import type { Page, Tab } from '../model';
+import { make_compared_run_tabs } from './comparison_run';
+import { make_compared_study_tabs } from './comparison_study';
 import { make_reproduction_tabs } from './reproduction_page';
 import { make_run_tabs } from './run_page';
 import { make_study_tabs } from './study_page';
@@ -14,6 +16,12 @@ function make_tabs(data: PageData): Tab[] {
       return make_study_tabs(data);
     case 'reproduction':
       return make_reproduction_tabs(data);
+    case 'comparison':
+      return data.runs !== null
+        ? make_compared_run_tabs(data, data.runs)
+        : data.studies !== null
+          ? make_compared_study_tabs(data, data.studies)
+          : [];
   }
 }
 
