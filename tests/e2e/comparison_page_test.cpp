@@ -102,6 +102,7 @@ TEST_F(CliComparison, RunsOfAnArmCaseByCase) {
   EXPECT_GE(replay["cases"].size(), 2);
   for (const json& one : replay["cases"]) {
     ASSERT_EQ(one["motions"].size(), 2);
+    EXPECT_THAT(one["label"].get<std::string>(), testing::EndsWith(" (of A)"));
     EXPECT_EQ(one["motions"][0]["design"], "a");
     EXPECT_EQ(one["motions"][1]["design"], "b");
   }

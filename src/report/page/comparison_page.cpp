@@ -205,6 +205,7 @@ json merge_replays(json a, json b) {
       }
     }
     one["motions"] = std::move(motions);
+    one["label"] = one.at("label").get<std::string>() + " (of A)";  // what is notable for A
     cases.push_back(std::move(one));
   }
   if (cases.empty()) {
