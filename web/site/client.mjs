@@ -44,6 +44,22 @@ for (const button of document.querySelectorAll('.copy')) {
   });
 }
 
+// ---- Boxes that scroll: the keyboard reaches them while something in them is cut ----
+const observer = new ResizeObserver((entries) => {
+  for (const { target: box } of entries) {
+    const is_cut = box.scrollWidth > box.clientWidth;
+    const attributes = { tabindex: '0', role: 'group', 'aria-label': box.tagName === 'PRE' ? 'Code' : 'Table' };
+    for (const [name, value] of Object.entries(attributes)) {
+      if (is_cut) {
+        box.setAttribute(name, value);
+      } else {
+        box.removeAttribute(name);
+      }
+    }
+  }
+});
+document.querySelectorAll('.table, figure.code pre').forEach((box) => observer.observe(box));
+
 // ---- The menu ----
 const menu = find('menu');
 menu.addEventListener('click', () => {

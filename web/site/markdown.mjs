@@ -87,13 +87,27 @@ export function make_renderer() {
     const text = tokens[index].content;
     return render_fence(/^armwright /.test(text) ? 'sh' : 'text', text);
   };
+  // A heading without words, such as that of a column of notes, is no heading.
+  markdown.renderer.rules.th_open = (tokens, index, options, env, self) => {
+    const tag = tokens[index + 1].content === '' ? 'td' : 'th';
+    tokens[index].tag = tag;
+    tokens[index + 2].tag = tag;
+    return self.renderToken(tokens, index, options);
+  };
   markdown.renderer.rules.table_open = () => '<div class="table"><table>\n';
   markdown.renderer.rules.table_close = () => '</table></div>\n';
   markdown.use(anchor, {
     level: [1, 2, 3, 4],
     slugify: make_slug,
     tabIndex: false,
-    permalink: anchor.permalink.linkInsideHeader({ symbol: '#', placement: 'after', class: 'anchor', ariaHidden: true }),
+    // For the mouse: it shows where to copy the address of a part. The keyboard would stop at every heading.
+    permalink: anchor.permalink.linkInsideHeader({
+      symbol: '#',
+      placement: 'after',
+      class: 'anchor',
+      ariaHidden: true,
+      renderAttrs: () => ({ tabindex: '-1' }),
+    }),
   });
 
   return (text, resolve) => {

@@ -95,9 +95,16 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
   const state = make('p', { class: 'state', role: 'status' });
   const notes = make('ul', { class: 'notes' });
   const list = make('div', { role: 'tablist', 'aria-label': 'Sections' });
-  const panel = make('main', { role: 'tabpanel', tabindex: '-1' });
+  const panel = make('div', { role: 'tabpanel', id: 'panel', tabindex: '0' });
   const foot = make('footer');
+  // The address after # names the open tab, so the link moves the focus itself.
+  const skip = make('a', { class: 'skip', href: '#panel' }, 'To the contents');
+  skip.addEventListener('click', (event) => {
+    event.preventDefault();
+    panel.focus();
+  });
   host.append(
+    skip,
     make(
       'header',
       {},
@@ -105,9 +112,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
       state,
       make_button('Light / dark', events.toggle_theme, { class: 'theme', 'aria-label': 'Light / dark' }),
     ),
-    notes,
-    list,
-    panel,
+    make('main', {}, notes, list, panel),
     foot,
   );
 
@@ -141,7 +146,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
       return;
     }
     const grid = make('div', { class: 'cards' });
-    panel.append(grid);
+    panel.append(make('h2', {}, tab.title), grid);
     for (const item of tab.items) {
       const view = make_view(page, item, look, clock);
       views.push(view);
@@ -182,7 +187,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
         choose(tab.id, false);
         history.replaceState(null, '', '#' + encodeURIComponent(tab.id));
       },
-      { role: 'tab', id: 'tab-' + tab.id, 'data-tab': tab.id },
+      { role: 'tab', id: 'tab-' + tab.id, 'data-tab': tab.id, 'aria-controls': panel.id },
     );
   }
 
@@ -208,7 +213,6 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
     close();
     events.on_print(true);
     page?.tabs.forEach((tab) => {
-      panel.append(make('h2', {}, tab.title));
       append_items({ ...tab, items: tab.items.filter((item) => item.kind !== 'replay') });
     });
     views.forEach((view) => view.settle());
