@@ -10,6 +10,7 @@ import { format_number } from '../numbers';
 import { make, make_button, make_select } from './dom';
 import { download } from './download';
 import { make_provenance } from './provenance';
+import { describe_table } from './spoken';
 import { show_table } from './table_view';
 import type { Clock } from './clock';
 import type { View } from './view';
@@ -66,7 +67,6 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
   const plot = make('div', {
     class: 'plot',
     role: 'img',
-    'aria-label': figure.title + '. ' + figure.caption,
   });
   plot.style.height = (figure.height ?? kDefaultHeight) + 'px';
   let drawn_width = 0; // pixels; a narrow chart depends on its width
@@ -84,6 +84,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
       plot.style.height = height_px + 'px';
       chart.resize();
     }
+    plot.setAttribute('aria-label', `${figure.title}. ${describe_table(figure.table(picked))}`);
     // Computing a table can take long and pointers move often, so the columns are computed once per
     // drawing.
     let columns: ReturnType<typeof figure.table>['columns'] | null = null;

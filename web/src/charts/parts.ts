@@ -46,7 +46,6 @@ export function make_chart(look: Look, x: Part | Part[], y: Part | Part[], serie
     backgroundColor: look.background,
     textStyle: { fontFamily: look.font, color: look.text },
     color: look.series,
-    aria: { enabled: true },
     grid: { left: 68, right: 24, top: legend_names.length > 1 ? 44 : 20, bottom: 48 },
     legend:
       legend_names.length > 1
