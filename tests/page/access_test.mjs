@@ -152,3 +152,130 @@ test('axe-core finds nothing while the search is open', async () => {
   };
   assert.deepEqual(await find_violations_of_text(join(site, 'verify.html'), 'search', search), []);
 });
+
+// Presses Tab until the focus leaves the page or comes around. Returns what had the focus, and complains about each
+// element that does not show it.
+async function walk(page) {
+  const stops = [];
+  for (let i = 0; i < 400; ++i) {
+    await page.keyboard.press('Tab');
+    const stop = await page.evaluate(() => {
+      const element = document.activeElement;
+      if (element === document.body || element.dataset.visited) {
+        return null;
+      }
+      element.dataset.visited = 'yes';
+      const { outlineStyle, outlineWidth } = getComputedStyle(element);
+      const { width, height, right } = element.getBoundingClientRect();
+      return {
+        name: `${element.tagName.toLowerCase()} ${element.id || element.className} "${(element.ariaLabel ?? element.textContent).trim().slice(0, 40)}"`,
+        is_shown: outlineStyle !== 'none' && parseFloat(outlineWidth) >= 1 && width > 0 && height > 0 && right > 0,
+      };
+    });
+    if (stop === null) {
+      break;
+    }
+    stops.push(stop);
+  }
+  assert.deepEqual(
+    stops.filter(({ is_shown }) => !is_shown).map(({ name }) => name),
+    [],
+    'the focus is not visible',
+  );
+  return stops.map(({ name }) => name);
+}
+
+test('the keyboard alone: a link past the tabs, arrows between them, sorted tables, a visible focus', async () => {
+  const { page, expect_no_faults } = await open_page(browser, join(kFolder, 'run.html'));
+  await page.keyboard.press('Tab');
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), 'To the contents');
+  await page.keyboard.press('Enter');
+  assert.equal(await page.evaluate(() => document.activeElement.getAttribute('role')), 'tabpanel');
+
+  const tabs = await list_tabs(page);
+  const get_tab = () => page.evaluate(() => document.activeElement.dataset.tab);
+  await page.keyboard.press('Shift+Tab');
+  for (const [key, tab] of [
+    ['ArrowRight', tabs[1]],
+    ['End', tabs.at(-1)],
+    ['ArrowRight', tabs[0]],
+    ['ArrowLeft', tabs.at(-1)],
+    ['Home', tabs[0]],
+    ['End', tabs.at(-1)],
+  ]) {
+    await page.keyboard.press(key);
+    assert.equal(await get_tab(), tab, key);
+    assert.equal(await page.locator('[role=tabpanel]').getAttribute('aria-labelledby'), `tab-${tab}`);
+  }
+  assert.equal(await page.locator('[role=tab][tabindex="0"]').count(), 1, 'the tabs are one stop');
+
+  await open_tab(page, 'design');
+  const heading = page.locator('th button.sort').first();
+  await heading.focus();
+  await page.keyboard.press('Enter');
+  assert.equal(await page.locator('th').first().getAttribute('aria-sort'), 'ascending');
+  await page.keyboard.press(' ');
+  assert.equal(await page.locator('th').first().getAttribute('aria-sort'), 'descending');
+
+  for (const tab of tabs) {
+    await open_tab(page, tab);
+    await page.evaluate(() => document.querySelectorAll('[data-visited]').forEach((one) => delete one.dataset.visited));
+    const stops = await walk(page);
+    const buttons = await page.locator('[role=tabpanel] button:visible').count();
+    assert.ok(stops.length >= buttons, `${tab} has ${buttons} buttons, and the keyboard stops ${stops.length} times: ${stops.join(', ')}`);
+  }
+  expect_no_faults();
+  await page.close();
+});
+
+test('the keyboard alone in the site', async () => {
+  const page = await browser.context.newPage();
+  await page.goto(pathToFileURL(join(site, 'tutorials/add-an-optimizer.html')).href);
+  const stops = await walk(page);
+  assert.match(stops[0], /"To the text"/);
+  assert.ok(
+    stops.some((name) => name.startsWith('pre')),
+    'a box of code is cut, and the keyboard does not reach it',
+  );
+  await page.close();
+});
+
+// Returns the elements that move or scroll by themselves.
+function find_motion() {
+  const is_still = (element, pseudo) => {
+    const style = getComputedStyle(element, pseudo);
+    const moves = style.animationName !== 'none' || style.transitionDuration.split(', ').some((time) => time !== '0s');
+    return !moves && style.scrollBehavior === 'auto';
+  };
+  const found = Array.from(document.querySelectorAll('*')).filter(
+    (one) => ![null, '::before', '::after'].every((part) => is_still(one, part)),
+  );
+  return found
+    .map((one) => `${one.tagName} ${one.getAttribute('class')} ${one.getAttribute('style')}`)
+    .concat(document.getAnimations().map(String));
+}
+
+test('nothing moves by itself for a reader who prefers less motion', async () => {
+  const { page, expect_no_faults } = await open_page(browser, join(kFolder, 'run.html'));
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await open_tab(page, 'training');
+  await page.waitForSelector('[data-figure=fitness] .plot svg');
+  const plot = await page.locator('[data-figure=fitness] .plot').boundingBox();
+  for (const share of [0.4, 0.6]) {
+    await page.mouse.move(plot.x + share * plot.width, plot.y + 0.5 * plot.height);
+  }
+  assert.deepEqual(await page.evaluate(find_motion), []);
+
+  await open_tab(page, 'motion');
+  await page.waitForSelector('.replay-play');
+  const before = await page.evaluate(() => window.armwright_replay.state.time_s);
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  assert.equal(await page.evaluate(() => window.armwright_replay.state.time_s), before);
+  assert.equal(await page.locator('.replay-play').innerText(), 'Play');
+  assert.deepEqual(await page.evaluate(find_motion), []);
+  expect_no_faults();
+
+  await page.goto(pathToFileURL(join(site, 'report.html')).href);
+  assert.deepEqual(await page.evaluate(find_motion), []);
+  await page.close();
+});

@@ -54,7 +54,7 @@ export function make_chart(look: Look, x: Part | Part[], y: Part | Part[], serie
             top: 4,
             data: legend_names,
             textStyle: { color: look.text, fontFamily: look.font, fontSize: 12 },
-            inactiveColor: look.grid,
+            inactiveColor: look.muted,
             pageTextStyle: { color: look.muted },
             pageIconColor: look.accent,
           }

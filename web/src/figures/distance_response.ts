@@ -108,7 +108,7 @@ export function make_response_figure(response: DistanceResponse, id = response.i
         series,
         {
           grid: { left: 68, right: 24, top: stacked ? 18 + 18 * names.length : 44, bottom: 62 },
-          ...(stacked ? { legend: make_legend_column(look.text, look.font, look.grid, names) } : {}),
+          ...(stacked ? { legend: make_legend_column(look.text, look.font, look.muted, names) } : {}),
         },
       );
     },
