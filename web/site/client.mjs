@@ -1,6 +1,6 @@
 // In the reader's browser: search, theme, copying, the menu of small screens. Pages can be read without it.
 import MiniSearch from 'minisearch';
-import { kSearch, make_excerpt } from './search.mjs';
+import { find_parts, kSearch, make_excerpt } from './search.mjs';
 
 const root = document.body.dataset.root;
 const kMost = 12; // results shown
@@ -123,7 +123,7 @@ async function search() {
     found.hidden = true;
     return;
   }
-  const results = (await load_index()).search(words).slice(0, kMost);
+  const results = find_parts(await load_index(), words).slice(0, kMost);
   if (input.value.trim() !== words) {
     return; // typed on meanwhile
   }

@@ -1,4 +1,5 @@
 // The documentation's site: its parts by themselves, then all of the documentation: no page without a way to it, no link that leads nowhere.
+import MiniSearch from 'minisearch';
 import assert from 'node:assert/strict';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -9,7 +10,7 @@ import { build_site, check_links, render_pages } from '../site/build.mjs';
 import { find_dead_addresses } from '../site/links.mjs';
 import { make_renderer, make_slug, render_fence, render_session } from '../site/markdown.mjs';
 import { SiteError, place_page, read_navigation } from '../site/navigation.mjs';
-import { kSearch, make_documents, make_excerpt } from '../site/search.mjs';
+import { find_parts, kSearch, make_documents, make_excerpt } from '../site/search.mjs';
 
 const kRoot = join(dirname(fileURLToPath(import.meta.url)), '../..');
 const scratch = mkdtempSync(join(tmpdir(), 'armwright-site-'));
@@ -150,6 +151,42 @@ test('names are found whole and by their pieces', () => {
   );
   assert.equal(make_excerpt('short text', ['text']), 'short text');
   assert.match(make_excerpt(`${'word '.repeat(50)}needle ${'word '.repeat(50)}`, ['needle']), /^\.\.\. .*needle.* \.\.\.$/);
+});
+
+test('a question in the words of a newcomer finds its page among the first three', () => {
+  const index = new MiniSearch(kSearch);
+  index.addAll(render_pages(read_navigation(kRoot)).flatMap(({ page, parts }) => make_documents(page, parts)));
+  const find_pages = (question) => [...new Set(find_parts(index, question).map(({ place }) => place.replace('.html', '')))];
+  assert.equal(find_pages('how do I tune my own robot')[0], 'tutorials/bring-your-robot');
+  const answers = {
+    'which optimizer is best': 'tour',
+    'how can I compare two optimizers': 'tutorials/compare',
+    'write my own optimizer in Python': 'tutorials/add-an-optimizer',
+    'how do I install it': 'install',
+    'continue a run after a crash': 'journal',
+    'run a study on a cluster with Slurm': 'clusters',
+    'export the gains to ROS 2': 'exporting',
+    'what does A12 mean': 'glossary',
+    'limit the torque of a joint': 'requirements',
+    'use armwright from Python': 'python',
+    'define a path for the tool': 'tasks',
+    'tune for a load that changes': 'robust',
+    'overshoot and settling time': 'requirements',
+    'check a design with another physics engine': 'verify',
+    'show the results in a browser': 'tutorials/compare',
+    'are my files damaged': 'doctor',
+    'why is my URDF rejected': 'robots',
+    'benchmark functions BBOB': 'functions',
+    'how many replicates do I need': 'tutorials/compare',
+    'PID gains of a controler': 'controllers', // a slip of the keyboard
+    'how fast is it on many cores': 'scaling',
+    'nlopt:sbplx': 'optimizers/nlopt-sbplx',
+  };
+  for (const [question, page] of Object.entries(answers)) {
+    const found = find_pages(question).slice(0, 3);
+    assert.ok(found.includes(page), `"${question}" finds ${found.join(', ')}, not ${page}`);
+  }
+  assert.deepEqual(find_pages('what is the'), [], 'words that say nothing');
 });
 
 test('every page of the documentation has its place, and every link of it leads somewhere', () => {
