@@ -78,11 +78,21 @@ export function render_fence(info, text) {
   return `<figure class="code ${escape_html(language)}">${title}${copy}<pre><code>${body}</code></pre></figure>\n`;
 }
 
+const kLongName = 20; // characters
+
+// Lets a line break at the joints of a long name: after . : / _ = - and before a capital letter. Else the name of a test or
+// a path takes the width of the other columns of its table.
+export function render_name(text) {
+  const pieces = text.length > kLongName ? text.split(/(?<=[.:/_=-])(?=\w)|(?<=[a-z])(?=[A-Z])/) : [text];
+  return `<code>${pieces.map(escape_html).join('<wbr>')}</code>`;
+}
+
 // render(text, resolve): {html, headings: [{level, slug, text}], parts: [{slug, title, text}], links: [target]}.
 // `resolve(target, is_image)` gives a link's address in the site.
 export function make_renderer() {
   const markdown = new MarkdownIt({ html: true, linkify: false, typographer: false });
   markdown.renderer.rules.fence = (tokens, index) => render_fence(tokens[index].info, tokens[index].content);
+  markdown.renderer.rules.code_inline = (tokens, index) => render_name(tokens[index].content);
   markdown.renderer.rules.code_block = (tokens, index) => {
     const text = tokens[index].content;
     return render_fence(/^armwright /.test(text) ? 'sh' : 'text', text);

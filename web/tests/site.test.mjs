@@ -8,7 +8,7 @@ import test, { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { build_site, check_links, render_pages } from '../site/build.mjs';
 import { find_dead_addresses } from '../site/links.mjs';
-import { make_renderer, make_slug, render_fence, render_session } from '../site/markdown.mjs';
+import { make_renderer, make_slug, render_fence, render_name, render_session } from '../site/markdown.mjs';
 import { SiteError, place_page, read_navigation } from '../site/navigation.mjs';
 import { find_parts, kSearch, make_documents, make_excerpt } from '../site/search.mjs';
 
@@ -123,6 +123,15 @@ test('of a session only what is typed can be copied, and nothing in it is markup
   assert.match(render_fence('toml my_task.toml', 'a = 1\n'), /<figcaption>my_task\.toml<\/figcaption><button/);
   assert.doesNotMatch(render_fence('toml problem=q1', 'a = 1\n'), /figcaption|button/);
   assert.doesNotMatch(render_fence('text', '<script>\n'), /<script>/);
+});
+
+test('long names may break at their joints, short ones stay whole', () => {
+  assert.equal(render_name('faults.Kill.AtEveryWriteOfARun'), '<code>faults.<wbr>Kill.<wbr>At<wbr>Every<wbr>Write<wbr>Of<wbr>ARun</code>');
+  assert.equal(
+    render_name('a/<b>/c_d=e-f/and/so/on/to'),
+    '<code>a/&lt;b&gt;/<wbr>c_<wbr>d=<wbr>e-<wbr>f/<wbr>and/<wbr>so/<wbr>on/<wbr>to</code>',
+  );
+  assert.equal(render_name('nlopt:sbplx'), '<code>nlopt:sbplx</code>');
 });
 
 test('names are found whole and by their pieces', () => {
