@@ -269,6 +269,7 @@ std::string make_datasheet(const FinishedArm& arm) {
   const std::string title = fmt::format("{}: tuned controllers", sanitize(arm.config().robot.name));
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
       "'unsafe-inline'\">\n<title>{0}</title>\n<style>{1}</style>\n</"
       "head>\n<body>\n<main>\n<h1>{0}</h1>\n"

@@ -108,8 +108,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
     make(
       'header',
       {},
-      make('div', { class: 'titles' }, title, subtitle),
-      state,
+      make('div', { class: 'titles' }, title, subtitle, state),
       make_button('Light / dark', events.toggle_theme, { class: 'theme', 'aria-label': 'Light / dark' }),
     ),
     make('main', {}, notes, list, panel),
