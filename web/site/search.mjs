@@ -69,7 +69,7 @@ function weigh_part(place, slug) {
       : /^(changelog|contributing|findings)/.test(place)
         ? 0.5
         : 1;
-  return slug === '' ? 1.3 * page : page;
+  return slug === '' ? 1.6 * page : page;
 }
 
 function find_synonyms(words) {

@@ -113,6 +113,37 @@ test('a site with dead links, forgotten pages or pages twice is not built', asyn
   );
 });
 
+test('the last line of a page names its next step, and the site shows it at the foot', async () => {
+  const root = make_root({
+    'docs/index.md': '# I\n\ntext\n\nNext: [how `b` works](a/b.md).\n',
+    'docs/c.md': '# C\n',
+    'docs/a/b.md': '# B\n',
+  });
+  const out = join(scratch, 'steps');
+  await build_site(root, out);
+  const read = (place) => readFileSync(join(out, place), 'utf8');
+  assert.match(read('index.html'), /class="after" href="a\/b\.html"><span>Next<\/span>How b works</);
+  assert.doesNotMatch(read('index.html'), /Next: /);
+  assert.match(read('c.html'), /class="after" href="a\/b\.html"><span>Next<\/span>B</);
+  assert.match(read('a/b.html'), /class="after" href="\.\.\/index\.html"/); // after the last page, the first
+  await refuse(
+    make_root({ 'docs/index.md': '# I\n\nNext: [x](y.md).\n' }),
+    /docs\/index\.md: its next step docs\/y\.md is no page of the site/,
+  );
+});
+
+test('every page of the documentation has a next step where it is read as a file', () => {
+  const pages = read_navigation(kRoot).pages.filter(({ source }) => source.startsWith('docs/'));
+  const kSteps = /\n## Where to go next\n(?!.*\n#)/s; // a last section of several steps
+  assert.ok(pages.length > 90, `${pages.length}`);
+  const without = pages.filter(({ step, text }) => step === null && !kSteps.test(text));
+  assert.deepEqual(
+    without.map(({ source }) => source),
+    [],
+    "these pages have no last line such as 'Next: [words](page.md).'",
+  );
+});
+
 test('of a session only what is typed can be copied, and nothing in it is markup', () => {
   const html = render_session('$ a --b <c> # why\nprinted <d>\n$ e \\\n>   f\nmore');
   assert.deepEqual(
