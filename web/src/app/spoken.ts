@@ -105,13 +105,13 @@ function describe_ranges(curves: Curve[], columns: Column[]): string {
 function describe_names(table: DataTable, numeric: number[]): string {
   const sentences: string[] = [];
   for (const y of numeric) {
-    const rows = table.rows
-      .filter((row) => typeof get_value(row[y]) === 'number')
-      .sort((a, b) => Number(get_value(a[y])) - Number(get_value(b[y])));
+    const value = (row: Row): number => get_value(row[y]) as number;
+    const rows = table.rows.filter((row) => typeof get_value(row[y]) === 'number');
     if (rows.length > 0 && sentences.length < 2) {
-      const tell = (row: Row): string => `${say(Number(get_value(row[y])), table.columns[y])} of ${shorten(String(get_value(row[0])))}`;
-      const highest = rows.length > 1 ? ', the highest ' + tell(rows[rows.length - 1]) : '';
-      sentences.push(`The lowest ${table.columns[y].label} is ${tell(rows[0])}${highest}.`);
+      const tell = (row: Row): string => `${say(value(row), table.columns[y])} of ${shorten(String(get_value(row[0])))}`;
+      const lowest = rows.reduce((best, row) => (value(row) < value(best) ? row : best));
+      const highest = rows.reduce((best, row) => (value(row) > value(best) ? row : best));
+      sentences.push(`The lowest ${table.columns[y].label} is ${tell(lowest)}${rows.length > 1 ? ', the highest ' + tell(highest) : ''}.`);
     }
   }
   return sentences.join(' ');
