@@ -231,6 +231,14 @@ export interface Headline {
   failures: number | null; // test cases that an arm failed
   test_cases: number | null;
   total_torque_n_m: number | null;
+  times: RunTimes | null; // null if the run has none, as runs of version 1.0
+}
+
+// How long a run took, over the lives of its process that were not killed.
+export interface RunTimes {
+  wall_s: number;
+  cpu_s: number | null; // null if other processes simulated cases
+  lives: number;
 }
 
 // A quantity that must not exceed a limit on any test case, and the result.
@@ -392,7 +400,8 @@ export interface StudyCell {
   value: number | null; // null: infinite
   cases: number;
   evaluations: number;
-  seconds: number | null; // CPU or wall time, if it was recorded; no run records it so far
+  wall_s: number | null; // null if it was not recorded, as in studies of version 1.0
+  cpu_s: number | null; // null also if other processes simulated cases
   failure: string; // of the optimizer
   failures: number; // failed test cases
   x: number[]; // the winner, 9 significant digits; empty if there is none

@@ -289,8 +289,18 @@ test('the tiles have the result of the run and its effort', () => {
   const data = make_run_data();
   assert.deepEqual(
     find(data, 'tiles').tiles.map((tile) => `${tile.label}: ${tile.value}`),
-    ['Mean error: 50 → 6.10 mm', 'Failed test cases: ✓ 0 of 500', 'Total torque: 930000 N m', 'Simulations: 2800', 'Started: 2026-01-31'],
+    [
+      'Mean error: 50 → 6.10 mm',
+      'Failed test cases: ✓ 0 of 500',
+      'Total torque: 930000 N m',
+      'Simulations: 2800',
+      'Time taken: 2 min 5 s',
+      'Started: 2026-01-31',
+    ],
   );
+  assert.equal(get_tile(data, 'Time taken').detail, '4 min 0 s of processor time, in 2 parts');
+  data.headline.times = { wall_s: 3, cpu_s: null, lives: 1 };
+  assert.equal(get_tile(data, 'Time taken').detail, 'processor time unknown');
   const error = get_tile(data, 'Mean error');
   assert.equal(error.detail, 'better by a factor of 8.20: base controllers → winner, on 500 cases of test/2');
   data.headline.value = 0.1;
@@ -315,6 +325,7 @@ test('tiles without a record are left out', () => {
     failures: null,
     test_cases: null,
     total_torque_n_m: null,
+    times: null,
   };
   const list = () => find(data, 'tiles').tiles.map((tile) => `${tile.label}: ${tile.value}`);
   assert.deepEqual(list(), ['f: 3.25e-7', 'Evaluated cases: 2800']);

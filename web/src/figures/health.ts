@@ -3,7 +3,7 @@
 import { join_names, shorten } from '../charts/names';
 import type { Health, HealthGrade, JointHealth, MoveHealth, RunData } from '../data';
 import type { GradeLine, SummaryItem, Tile } from '../model';
-import { format_number, kMillimetres } from '../numbers';
+import { format_duration, format_number, kMillimetres } from '../numbers';
 import { count_of, get_shown, is_number } from './quantities';
 
 const kStates: { [grade in HealthGrade]: { state: string; mark: GradeLine['mark'] } } = {
@@ -98,6 +98,16 @@ function make_torque_tile(data: RunData): Tile | null {
   };
 }
 
+function make_time_tile(data: RunData): Tile | null {
+  const times = data.headline.times;
+  if (times === null) {
+    return null;
+  }
+  const cpu = times.cpu_s === null ? 'processor time unknown' : format_duration(times.cpu_s) + ' of processor time';
+  const value = format_duration(times.wall_s);
+  return { label: 'Time taken', value, detail: times.lives === 1 ? cpu : `${cpu}, in ${times.lives} parts` };
+}
+
 function make_tiles(data: RunData): Tile[] {
   const { started, cases, evaluations } = data.headline;
   const found = /^(\d{4}-\d\d-\d\d)T(\d\d:\d\d)/.exec(started);
@@ -110,6 +120,7 @@ function make_tiles(data: RunData): Tile[] {
       value: String(cases),
       detail: `of ${data.training.budget} in the budget, in ${count_of(evaluations, 'evaluation')}`,
     },
+    make_time_tile(data),
     found === null ? null : { label: 'Started', value: found[1], detail: found[2] + ' UTC' },
   ];
   return tiles.filter((tile): tile is Tile => tile !== null);

@@ -131,7 +131,8 @@ export function make_cells_table(scope: Scope): TableItem {
     { label: 'value', unit, numeric: true },
     { label: 'cases', numeric: true, digits: 9 },
     { label: 'evaluations', numeric: true, digits: 9 },
-    { label: 'time', unit: 's', numeric: true },
+    { label: 'time taken', unit: 's', numeric: true },
+    { label: 'CPU time', unit: 's', numeric: true },
     { label: 'failed test cases', numeric: true, digits: 9 },
     { label: "optimizer's failure" },
     { label: 'folder' },
@@ -148,7 +149,8 @@ export function make_cells_table(scope: Scope): TableItem {
               { value, command: cell.command, note: value === null ? 'no value' : undefined },
               cell.cases,
               cell.evaluations,
-              cell.seconds,
+              cell.wall_s,
+              cell.cpu_s,
               cell.failures,
               cell.failure,
               cell.folder,
@@ -157,16 +159,16 @@ export function make_cells_table(scope: Scope): TableItem {
         ),
       [] as Row[],
     );
-  const has_times = scope.problems.some((problem) => problem.results.some((one) => one.cells.some((cell) => cell.seconds !== null)));
+  const has_times = scope.problems.some((problem) => problem.results.some((one) => one.cells.some((cell) => cell.wall_s !== null)));
   return {
     kind: 'table',
     id: 'cells' + scope.suffix,
     title: end_title(scope, 'Every run'),
     caption:
       'All runs that have ended, each with the command that makes it again, bit for bit. The value is that of the winner on the test set; a dash means that there is none. ' +
-      (has_times ? 'The times are not part of the comparison. ' : '') +
+      (has_times ? 'The times depend on the machine and are not part of the comparison. ' : '') +
       describe_size(scope),
-    table: drop_empty_columns(tabulate(scope, get_value_unit, columns, rows), ['time', "optimizer's failure"]),
+    table: drop_empty_columns(tabulate(scope, get_value_unit, columns, rows), ['time taken', 'CPU time', "optimizer's failure"]),
   };
 }
 
