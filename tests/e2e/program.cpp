@@ -192,11 +192,16 @@ std::string run_on_terminal(const std::filesystem::path& folder,
   const int pid = spawn.start(folder, arguments, environment);
   ::close(theirs);
   check(::write(ours, typed.data(), typed.size()) < 0 ? errno : 0, "write");
+  bool waits = !environment.interrupt_at.empty();
   std::string shown;
   char buffer[4096];
   // A terminal whose last program has gone answers with EIO.
   for (ssize_t got = 0; (got = ::read(ours, buffer, sizeof buffer)) > 0;) {
     shown.append(buffer, static_cast<std::size_t>(got));
+    if (waits && shown.find(environment.interrupt_at) != std::string::npos) {
+      check(::kill(pid, SIGINT) == 0 ? 0 : errno, "kill");
+      waits = false;
+    }
   }
   ::close(ours);
   ::waitpid(pid, nullptr, 0);

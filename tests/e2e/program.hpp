@@ -24,6 +24,8 @@ struct Environment {
   // limits or closes streams: {"sh", "-c", "ulimit -v 1000000; exec \"$@\"", "sh"}.
   std::vector<std::string> launcher = {};
   bool own_group = false;  // it leads a process group of its own
+  std::string interrupt_at =
+      {};  // run_on_terminal() sends SIGINT once the terminal shows this text
 };
 
 // One running program. Its stdout and stderr go to files, so that it never waits for us; NO_COLOR,

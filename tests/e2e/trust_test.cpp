@@ -64,6 +64,7 @@ class CliTrust : public testing::Test {
             {"show", "study", "--json"},
             {"status", "study"},
             {"report", "study", "--out", "report.html"},
+            {"report", "study", "study", "--out", "comparison.html"},
             {"plot", "study", "--out", "figures"},
             {"export", "study", "--format", "csv", "--out", "export"},
             {"doctor", "study"},

@@ -4,8 +4,10 @@
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { pathToFileURL } from 'node:url';
 import { list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
 import { kFolder } from './make_pages.mjs';
+import { kReports, make_datasheet, start_watch } from './pages.mjs';
 
 const kWidths = [390, 768, 1280, 1920];
 const kHeight = 844; // pixels, of a telephone's screen
@@ -51,13 +53,14 @@ function find_faults() {
       }
       const over = Math.max(box.left - rect.left, rect.right - box.right, box.top - rect.top, rect.bottom - box.bottom);
       if (over > kRounding_px) {
-        faults.push(`${name(child)} leaves the card ${card.dataset.figure} by ${over.toFixed(0)} px`);
+        faults.push(`${name(child)} leaves the card ${card.dataset.figure ?? 'of the sheet'} by ${over.toFixed(0)} px`);
       } else if (!is_scrollable(child) && getComputedStyle(child).overflowX !== 'hidden' && child.tagName !== 'svg') {
         check_children(card, box, child);
       }
     }
   };
-  document.querySelectorAll('.card').forEach((card) => check_children(card, card.getBoundingClientRect(), card));
+  // A data sheet has no cards, and everything lies within its text.
+  document.querySelectorAll('.card, body > main').forEach((card) => check_children(card, card.getBoundingClientRect(), card));
 
   // A box with hidden content is named, reached by the keyboard, and has a shadow at each cut edge
   // and a sentence below.
@@ -99,7 +102,7 @@ function find_faults() {
   }
 
   // The title has three quarters of the head's width.
-  const [head, titles] = ['header', '.titles'].map((one) => document.querySelector(one).getBoundingClientRect().width);
+  const [head, titles] = ['header', '.titles'].map((one) => document.querySelector(one)?.getBoundingClientRect().width);
   if (titles < 0.75 * head) {
     faults.push(`the title has ${titles.toFixed(0)} px of ${head.toFixed(0)} px`);
   }
@@ -113,10 +116,10 @@ function find_faults() {
 
   // The texts of a chart are whole and cover no other texts in the same direction. Texts of which a
   // legend shows a part, page by page, have a clip path.
-  for (const plot of document.querySelectorAll('.plot')) {
-    const figure = plot.closest('.card').dataset.figure;
+  for (const plot of document.querySelectorAll('.plot, main > section svg')) {
+    const figure = plot.closest('.card')?.dataset.figure ?? 'the sheet';
     const frame = plot.getBoundingClientRect();
-    const texts = Array.from(plot.querySelectorAll('svg text'))
+    const texts = Array.from(plot.querySelectorAll('text'))
       .filter((text) => text.textContent.trim() !== '' && text.closest('[clip-path]') === null)
       .map((text) => {
         const { a, b, c, d, e, f } = text.getScreenCTM();
@@ -196,8 +199,8 @@ function find_faults() {
   return faults;
 }
 
-async function check_page(name) {
-  const { page, expect_no_faults } = await open_page(browser, join(kFolder, `${name}.html`));
+async function check_page(name, address = join(kFolder, `${name}.html`)) {
+  const { page, expect_no_faults } = await open_page(browser, address);
   const found = [];
   for (const tab of await list_tabs(page)) {
     await open_tab(page, tab);
@@ -219,9 +222,36 @@ async function check_page(name) {
   assert.ok(found.length === 0, `${found.length} faults:\n${found.slice(0, 40).join('\n')}`);
 }
 
-for (const name of ['run', 'study', 'reproduction', 'front']) {
+for (const name of kReports) {
   test(`the layout of the page "${name}" fits every width`, () => check_page(name));
 }
+
+test('the layout of the page of a study under way fits every width', async () => {
+  const { address, stop } = await start_watch('watched-for-layout');
+  await check_page('watch', address).finally(stop);
+});
+
+test('the layout of a data sheet fits every width', async () => {
+  const page = await browser.context.newPage();
+  await page.goto(pathToFileURL(make_datasheet('datasheet-for-layout')).href);
+  const found = [];
+  for (const width of kWidths) {
+    await page.setViewportSize({ width, height: kHeight });
+    for (const colorScheme of ['light', 'dark']) {
+      await page.emulateMedia({ colorScheme });
+      found.push(...(await page.evaluate(find_faults)).map((fault) => `${width} px, ${colorScheme}: ${fault}`));
+    }
+    // A cell that is cut shows its text to the pointer.
+    const cut = await page.$$eval('th, td, dd', (all) =>
+      all
+        .filter((one) => (one.scrollWidth > one.clientWidth || one.scrollHeight > one.clientHeight + 1) && one.title === '')
+        .map((one) => one.textContent),
+    );
+    found.push(...cut.map((text) => `${width} px: "${text}" is cut`));
+  }
+  await page.close();
+  assert.deepEqual(found, []);
+});
 
 test('keys scroll a cut table, and at its end the shadow is on the other side', async () => {
   const { page, expect_no_faults } = await open_page(browser, join(kFolder, 'run.html'));

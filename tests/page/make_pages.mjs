@@ -54,6 +54,19 @@ function make_study() {
   run_program('report', study, '--out', join(kFolder, 'study.html'), '--quiet');
 }
 
+// Two runs of one problem, and two studies of which one has fewer problems and optimizers.
+function make_comparisons() {
+  const run = join(kFolder, 'other-run');
+  run_program(...['optimize', 'q1-complex', '--engine', 'articulated', '--optimizer', 'cmaes', '--budget', '700', '--out', run, '--quiet']);
+  run_program('report', join(kFolder, 'run'), run, '--out', join(kFolder, 'comparison.html'), '--quiet');
+  const study = join(kFolder, 'other-study');
+  run_program(
+    ...['compare', '--problems', 'q1-complex', '--optimizers', 'ga,cmaes', '--replicates', '6', '--budget', '140'],
+    ...['--engine', 'articulated', '--set', 'sets.validation_cases=20', '--out', study, '--quiet'],
+  );
+  run_program('report', join(kFolder, 'study'), study, '--out', join(kFolder, 'study-comparison.html'), '--quiet');
+}
+
 function make_reproduction() {
   const folder = join(kFolder, 'reproduction');
   // Above the speed that it was tuned for the design diverges in some cases, which is a result (code 3).
@@ -70,5 +83,6 @@ if (process.argv[2] !== undefined) {
   make_front();
   make_function();
   make_study();
+  make_comparisons();
   make_reproduction();
 }

@@ -15,7 +15,7 @@ function fail_program(...args) {
   return assert.fail('it was done');
 }
 
-for (const name of ['run', 'front', 'function', 'study', 'reproduction']) {
+for (const name of ['run', 'front', 'function', 'study', 'reproduction', 'comparison', 'study-comparison']) {
   test(`all figures of the page ${name}`, () => {
     const page = join(kFolder, name + '.html');
     const folder = join(kFolder, name + '-figures');

@@ -143,18 +143,276 @@ test('the replay plays, is scrubbed, and shows the robot', async () => {
   await page.close();
 });
 
-test('the replay and the plots over time share their cursor', async () => {
+test('the replay opens with the median test case of the winner', async () => {
+  const { winner } = JSON.parse(readFileSync(join(kFolder, 'run', 'result.json'), 'utf8'));
+  const errors = winner.test.case_errors;
+  const median = errors.slice().sort((a, b) => a - b)[Math.floor((errors.length - 1) / 2)];
+  const { page, expect_no_faults } = await open_run();
+  await open_replay(page);
+  const [set, number] = (await get_state(page)).case.split(':');
+  assert.match(set, /^test/);
+  assert.equal(errors[Number(number)], median);
+  const chosen = page.locator('.replay label', { hasText: 'Test case' }).locator('option:checked');
+  assert.match(await chosen.innerText(), new RegExp(`: the median of ${errors.length} by error$`));
+  expect_no_faults();
+  await page.close();
+});
+
+test('the slider of the replay stands above the cursor of its error', async () => {
+  const { page, expect_no_faults } = await open_run();
+  for (const width of [390, 1280]) {
+    await page.setViewportSize({ width, height: 900 });
+    await open_replay(page);
+    await page.waitForFunction(() => window.armwright_replay?.state.frames > 0);
+    await page.locator('.replay-strip').scrollIntoViewIfNeeded();
+    const [slider, strip] = await Promise.all(['.replay-scrub', '.replay-strip'].map((one) => page.locator(one).boundingBox()));
+    const per_pixel_s = (await page.evaluate(() => Number(document.querySelector('.replay-scrub').max) / 100)) / (strip.width - 74);
+    for (const share of [0, 0.3, 0.8, 1]) {
+      const x = strip.x + 62 + share * (strip.width - 74);
+      await page.mouse.click(x, strip.y + 40);
+      const by_strip = await get_state(page);
+      await page.waitForFunction(({ step }) => document.querySelector('.replay-scrub').value === String(step), by_strip);
+      const cursor = await page.locator('.replay-cursor').evaluate((one) => one.getBoundingClientRect().left);
+      assert.ok(Math.abs(cursor - x) <= 1.5, `${width} px, ${share}: the cursor is at ${cursor}, the click at ${x}, step ${by_strip.step}`);
+      // A click beside the handle moves its centre to the pointer.
+      await page.mouse.click(strip.x + 62 + (share < 0.5 ? 0.9 : 0.1) * (strip.width - 74), strip.y + 40);
+      await page.waitForFunction(({ step }) => document.querySelector('.replay-scrub').value !== String(step), by_strip);
+      await page.mouse.click(x, slider.y + slider.height / 2);
+      const by_slider = await get_state(page);
+      const apart_s = Math.abs(by_slider.time_s - by_strip.time_s);
+      assert.ok(apart_s <= 2 * per_pixel_s, `${width} px, ${share}: ${by_slider.time_s} s and ${by_strip.time_s} s`);
+    }
+  }
+  expect_no_faults();
+  await page.close();
+});
+
+test('the arm is seen from above, and its links have the colours of torques or of joint limits', async () => {
   const { page, expect_no_faults } = await open_run();
   await open_replay(page);
   await page.waitForFunction(() => window.armwright_replay?.state.frames > 0);
+  const count_orange = () =>
+    page.evaluate(() => {
+      const canvas = document.querySelector('.replay canvas');
+      const copy = Object.assign(document.createElement('canvas'), { width: canvas.width, height: canvas.height });
+      const context = copy.getContext('2d');
+      context.drawImage(canvas, 0, 0);
+      const { data } = context.getImageData(0, 0, copy.width, copy.height);
+      let orange = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        orange += data[i] > data[i + 2] + 60 ? 1 : 0;
+      }
+      return orange / (data.length / 4);
+    });
+  const draw = async (change) => {
+    const { frames } = await get_state(page);
+    await change();
+    await page.waitForFunction((before) => window.armwright_replay.state.frames > before, frames);
+    return count_orange();
+  };
+  const from_side = await draw(() => page.getByRole('button', { name: 'Side' }).click());
+  const from_above = await draw(() => page.getByRole('button', { name: 'Top' }).click());
+  assert.ok(from_above > 0.001 && Math.abs(from_above - from_side) > 0.1 * from_side, `${from_above} and ${from_side}`);
+  const select = page.locator('.replay label', { hasText: /^Arm/ }).locator('select');
+  for (const paint of ['torque', 'position']) {
+    await select.selectOption('robot');
+    const before = await count_orange();
+    const after = await draw(() => select.selectOption(paint));
+    assert.ok(after < 0.6 * before, `${paint}: ${after} after ${before}`);
+    assert.equal(await page.locator('.replay-paints > span').count(), 6);
+    const rows = await page.locator('.replay-joints dd').allInnerTexts();
+    rows.forEach((row) => assert.match(row, paint === 'torque' ? /, –$/ : /, (\d+ %|at the limit|–)$/));
+  }
+  expect_no_faults();
+  await page.close();
+});
+
+async function open_motion(width = 1280) {
+  const { page, expect_no_faults } = await open_run();
+  await page.setViewportSize({ width, height: 900 });
+  await open_replay(page);
+  await page.waitForFunction(() => window.armwright_replay?.state.frames > 0);
+  for (const id of ['joint-angles', 'joint-torques', 'momentary-error']) {
+    await page.waitForFunction((name) => document.querySelectorAll(`[data-figure=${name}] .plot svg path`).length > 5, id);
+  }
+  return { page, expect_no_faults };
+}
+
+const find_plot = async (page, id) => (await find_figure(page, id)).locator('.plot').boundingBox();
+const get_readings = (page, id) =>
+  page.$$eval(`[data-figure=${id}] .readings tr`, (rows) => rows.map((row) => Array.from(row.children, (cell) => cell.textContent)));
+
+test('the replay and the plots over time share their cursor', async () => {
+  const { page, expect_no_faults } = await open_motion();
   const card = await find_figure(page, 'joint-torques');
-  await page.waitForFunction(() => document.querySelectorAll('[data-figure=joint-torques] .plot svg path').length > 5);
-  const box = await card.locator('.plot').boundingBox();
+  const box = await find_plot(page, 'joint-torques');
   await page.mouse.click(box.x + box.width * 0.6, box.y + box.height * 0.5);
   const state = await get_state(page);
   assert.ok(state.time_s > 1, `the time is ${state.time_s} s`);
   const left = await card.locator('.cursor').evaluate((cursor) => cursor.getBoundingClientRect().left);
   assert.ok(Math.abs(left - (box.x + box.width * 0.6)) < 3, `the cursor is at ${left}`);
+  assert.equal(await page.locator('[data-figure=joint-angles] .cursor').isVisible(), true);
+
+  // In a panel of the third move, a click goes to the time of the case.
+  const moves = await find_plot(page, 'momentary-error');
+  await page.mouse.click(moves.x + moves.width * 0.5, moves.y + moves.height * 0.3);
+  const in_move = await get_state(page);
+  assert.notEqual(in_move.time_s, state.time_s);
+  const [[, local_s]] = await get_readings(page, 'momentary-error');
+  const segment_s = in_move.time_s - Number(local_s);
+  const [[, case_s]] = await get_readings(page, 'joint-angles');
+  assert.ok(segment_s > 1 && Math.abs(Number(case_s) - in_move.time_s) < 0.005, `${local_s} s in the move, ${case_s} s in the case`);
+  expect_no_faults();
+  await page.close();
+});
+
+for (const width of [390, 1280]) {
+  test(`the pointer over one plot shows the values at this time in all, at ${width} px`, async () => {
+    const { page, expect_no_faults } = await open_motion(width);
+    const box = await find_plot(page, 'joint-torques');
+    await page.mouse.move(box.x + box.width * 0.6, box.y + box.height * 0.6);
+    const [[name, time], joint] = await get_readings(page, 'joint-torques');
+    assert.equal(name, 'time (s)');
+    assert.match(joint[0], /^joint_1/);
+    for (const [id, rows] of Object.entries({ 'joint-angles': 9, 'joint-errors': 5 })) {
+      const readings = await get_readings(page, id);
+      assert.equal(readings.length, rows, id);
+      assert.deepEqual(readings[0], [name, time]);
+      readings.forEach((row) => assert.match(row[1], /\d/));
+      const [inner, outer] = await page.evaluate(
+        (figure) =>
+          ['.readings', '.frame'].map((part) => document.querySelector(`[data-figure=${figure}] ${part}`).getBoundingClientRect()),
+        id,
+      );
+      const over = Math.max(outer.left - inner.left, inner.right - outer.right, outer.top - inner.top, inner.bottom - outer.bottom);
+      assert.ok(over <= 0.5, `the values of ${id} leave their frame by ${over} px`);
+    }
+    // The value is that of the table at this time.
+    const angle = Number((await get_readings(page, 'joint-angles'))[1][1]);
+    const [errors] = await Promise.all([
+      page.waitForEvent('download'),
+      page.locator('[data-figure=joint-angles]').getByRole('button', { name: 'CSV' }).click(),
+    ]);
+    const lines = readFileSync(await errors.path(), 'utf8')
+      .trim()
+      .split('\r\n');
+    const near = lines
+      .slice(1)
+      .map((line) => line.split(',').map(Number))
+      .filter((row) => Math.abs(row[0] - Number(time)) < 0.03);
+    assert.ok(
+      near.length >= 4 && near.some((row) => Math.abs(row[1] - angle) < 0.5),
+      `${angle} is not one of ${near.map((row) => row[1])}`,
+    );
+    // The strip of the replay takes part: its line is at the same share of the case.
+    const again = await find_plot(page, 'joint-torques');
+    const strip = await page.locator('.replay-strip').boundingBox();
+    const whole_s = (await page.evaluate(() => Number(document.querySelector('.replay-scrub').max))) / 100;
+    await page.mouse.move(again.x + again.width * 0.6, again.y + again.height * 0.6);
+    const mark = await page.locator('.replay-pointer').evaluate((one) => one.getBoundingClientRect().left);
+    const expected = strip.x + 62 + (Number(time) / whole_s) * (strip.width - 74);
+    assert.ok(Math.abs(mark - expected) <= 1.5, `the line of the strip is at ${mark}, not ${expected}`);
+    await page.locator('.replay-strip').scrollIntoViewIfNeeded();
+    const seen = await page.locator('.replay-strip').boundingBox();
+    await page.mouse.move(seen.x + 62 + 0.25 * (seen.width - 74), seen.y + 40);
+    const [[, pointed]] = await get_readings(page, 'joint-errors');
+    assert.ok(Math.abs(Number(pointed) - 0.25 * whole_s) < 0.02 * whole_s, `${pointed} s is not a quarter of ${whole_s} s`);
+    await page.mouse.move(seen.x + seen.width / 2, seen.y + seen.height + 12);
+    assert.equal(await page.locator('.readings').count(), 0);
+    expect_no_faults();
+    await page.close();
+  });
+}
+
+test('a drag zooms all plots of a motion, and a click, Escape and a double click end it', async () => {
+  const { page, expect_no_faults } = await open_motion();
+  const reset = (id) => page.locator(`[data-figure=${id}] .reset-zoom`);
+  const get_ticks = (id) =>
+    page.$$eval(`[data-figure=${id}] .plot svg text`, (texts) =>
+      texts.map((text) => text.textContent).filter((text) => /^-?[\d.]+$/.test(text)),
+    );
+  const drag = async (id) => {
+    const box = await find_plot(page, id);
+    await page.mouse.move(box.x + box.width * 0.4, box.y + box.height * 0.5);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width * 0.45, box.y + box.height * 0.55, { steps: 4 });
+    assert.equal(await page.locator(`[data-figure=${id}] .zoom-band`).isVisible(), true);
+    await page.mouse.up();
+    return box;
+  };
+  const before = await get_ticks('joint-angles');
+  assert.equal(await page.locator('.reset-zoom:visible').count(), 0);
+  const ends = {
+    button: async () => reset('joint-errors').click(),
+    Escape: async () => page.keyboard.press('Escape'),
+    'a double click': async (box) => page.mouse.dblclick(box.x + box.width * 0.5, box.y + box.height * 0.6),
+  };
+  for (const [name, end] of Object.entries(ends)) {
+    const { time_s } = await get_state(page);
+    const box = await drag('joint-torques');
+    assert.equal((await get_state(page)).time_s, time_s, 'a drag is no click');
+    for (const id of ['joint-angles', 'joint-errors', 'joint-torques']) {
+      assert.equal(await reset(id).isVisible(), true, id);
+    }
+    assert.notDeepEqual(await get_ticks('joint-angles'), before);
+    assert.equal(await page.locator('[data-figure=joint-torques] .zoom-band').isVisible(), false);
+    // A click goes to a time within the zoomed range.
+    await page.mouse.click(box.x + box.width * 0.5, box.y + box.height * 0.5);
+    const clicked = await get_state(page);
+    const [[, time]] = await get_readings(page, 'joint-torques');
+    assert.ok(Math.abs(clicked.time_s - Number(time)) < 0.005, `${clicked.time_s} is not ${time}`);
+    await end(box);
+    assert.equal(await page.locator('.reset-zoom:visible').count(), 0, name);
+    assert.deepEqual(await get_ticks('joint-angles'), before, name);
+  }
+  // The plots of another motion have their own zoom.
+  await drag('joint-angles');
+  await page.locator('[data-figure=joint-angles] label', { hasText: 'case' }).locator('select').selectOption({ index: 1 });
+  assert.equal(await page.locator('.reset-zoom:visible').count(), 0);
+  expect_no_faults();
+  await page.close();
+});
+
+test('the training has a zoom of its own, for each abscissa', async () => {
+  const { page, expect_no_faults } = await open_run();
+  await open_tab(page, 'training');
+  await page.waitForFunction(() => document.querySelectorAll('[data-figure=fitness] .plot svg path').length > 5);
+  const box = await find_plot(page, 'fitness');
+  await page.mouse.move(box.x + box.width * 0.5, box.y + box.height * 0.5);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.9, box.y + box.height * 0.5, { steps: 4 });
+  await page.mouse.up();
+  assert.equal(await page.locator('[data-figure=fitness] .reset-zoom').isVisible(), true);
+  assert.equal(await page.locator('.reset-zoom:visible').count(), 1);
+  const abscissa = page.locator('[data-figure=fitness] label', { hasText: 'against' }).locator('select');
+  await abscissa.selectOption('cases');
+  assert.equal(await page.locator('.reset-zoom:visible').count(), 0);
+  await abscissa.selectOption('index');
+  assert.equal(await page.locator('.reset-zoom:visible').count(), 1);
+  expect_no_faults();
+  await page.close();
+});
+
+test('a finger scrolls over a plot, and a tap shows the values', async () => {
+  const { page, expect_no_faults } = await open_motion(390);
+  const box = await find_plot(page, 'joint-angles');
+  const session = await page.context().newCDPSession(page);
+  const [x, y] = [box.x + box.width * 0.5, box.y + box.height * 0.6];
+  const touch = (type, place) =>
+    session.send('Input.dispatchTouchEvent', { type, touchPoints: place === null ? [] : [{ x: place[0], y: place[1] }] });
+  const before = await page.evaluate(() => scrollY);
+  await touch('touchStart', [x, y]);
+  for (let k = 1; k <= 10; ++k) {
+    await touch('touchMove', [x, y - 15 * k]);
+  }
+  await touch('touchEnd', null);
+  await page.waitForFunction((start) => scrollY > start + 50, before);
+  assert.equal(await page.locator('.reset-zoom:visible').count(), 0);
+  const moved = await find_plot(page, 'joint-angles');
+  const place = [moved.x + moved.width * 0.5, moved.y + moved.height * 0.6];
+  await touch('touchStart', place);
+  await touch('touchEnd', null);
+  await page.waitForSelector('[data-figure=joint-angles] .readings');
   expect_no_faults();
   await page.close();
 });
@@ -219,7 +477,7 @@ test('a figure says its numbers: under the pointer, as a table, as CSV, as SVG',
   await page.close();
 });
 
-test('a series is switched off and on', async () => {
+test('a series is switched off and on, and shown alone', async () => {
   const { page, expect_no_faults } = await open_run();
   await open_tab(page, 'training');
   const card = await find_figure(page, 'fitness');
@@ -234,6 +492,22 @@ test('a series is switched off and on', async () => {
   await entry.click();
   await page.waitForTimeout(100);
   assert.equal(await count(), all);
+
+  // A double click, or a click with Alt, shows a series alone, and again shows all of them.
+  await entry.dblclick();
+  await page.waitForTimeout(100);
+  const alone = await count();
+  assert.ok(alone < fewer, `${alone} paths alone, ${fewer} without it`);
+  await entry.dblclick();
+  await page.waitForTimeout(100);
+  assert.equal(await count(), all);
+  await entry.click({ modifiers: ['Alt'] });
+  await page.waitForTimeout(100);
+  assert.equal(await count(), alone);
+  await entry.hover();
+  await page.waitForFunction(() =>
+    /Double-click or Alt-click/.test(document.querySelector('[data-figure=fitness] .tip')?.textContent ?? ''),
+  );
   expect_no_faults();
   await page.close();
 });

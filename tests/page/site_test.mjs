@@ -168,6 +168,30 @@ test('on a phone nothing has to be scrolled sideways, and the menu opens', async
   assert.deepEqual(faults, []);
 });
 
+test('long names in a table break at their joints and leave room for the other columns', async () => {
+  for (const width of [390, 1280]) {
+    await page.setViewportSize({ width, height: 844 });
+    await page.goto(address('reliability.html'));
+    const { columns, box, cut, over } = await page
+      .locator('.table:has(th:text-is("promise"))')
+      .first()
+      .evaluate((one) => ({
+        columns: Array.from(one.querySelectorAll('th'), (cell) => cell.getBoundingClientRect().width),
+        box: one.clientWidth,
+        cut: one.scrollWidth - one.clientWidth,
+        over: Array.from(one.querySelectorAll('td code'))
+          .filter((code) => code.getBoundingClientRect().right > code.closest('td').getBoundingClientRect().right + 1)
+          .map((code) => code.textContent),
+      }));
+    assert.ok(cut <= 1, `at ${width} px the table of faults is ${cut} px wider than its box`);
+    assert.deepEqual(over, [], `names leave their cells at ${width} px`);
+    const promise = columns[1] / box;
+    assert.ok(promise > 0.3, `at ${width} px the promises have ${(100 * promise).toFixed(0)} % of the width: ${columns}`);
+  }
+  await page.setViewportSize(kDesktop);
+  assert.deepEqual(faults, []);
+});
+
 test('on paper there is the text alone, dark on white whatever the theme', async () => {
   await page.goto(address('verify.html'));
   await page.evaluate(() => (document.documentElement.dataset.theme = 'dark'));

@@ -27,7 +27,17 @@ async function open_tab_of(page, figure) {
 test('every tab of a comparison has its figures', async () => {
   const { page, expect_no_faults } = await open_study();
   const found = await check_every_tab(page);
-  for (const figure of ['convergence', 'runtime-ecdf', 'values', 'pairs', 'ranks', 'parallel', 'cost-quality', 'data-profile']) {
+  for (const figure of [
+    'convergence',
+    'runtime-ecdf',
+    'values',
+    'pairs',
+    'ranks',
+    'parallel',
+    'cost-quality',
+    'pooled-ecdf',
+    'data-profile',
+  ]) {
     assert.ok(
       found.some((name) => name.startsWith(figure)),
       `${figure} is missing; there are ${found.join(', ')}`,
@@ -67,6 +77,131 @@ test('the verdict is folded away, and opened it is word for word as in its file'
   assert.equal(shown.join(' ').replace(/\s+/g, ' ').trim(), verdict.replace(/\s+/g, ' ').trim());
   expect_no_faults();
   await page.close();
+});
+
+test('one filter applies to all tabs, and survives a change of the tab', async () => {
+  const { page, expect_no_faults } = await open_study();
+  const filter = page.locator('.filter');
+  assert.equal(await filter.locator('summary').innerText(), '4 of 4 optimizers are shown.');
+  assert.equal(await filter.locator('input').first().isVisible(), false);
+  await filter.locator('summary').click();
+  assert.equal(await filter.getByText('only the best 12').isVisible(), false); // there are four
+  await filter.getByRole('searchbox').fill('cma nlopt:*');
+  const expect_shown = async (sentence, present, absent) => {
+    assert.equal(await filter.locator('summary').innerText(), sentence);
+    const texts = page.locator('main svg text');
+    await page.waitForFunction(
+      (name) => Array.from(document.querySelectorAll('main svg text')).some((text) => text.textContent === name),
+      present,
+    );
+    await page.waitForFunction(
+      (name) => Array.from(document.querySelectorAll('main svg text')).every((text) => text.textContent !== name),
+      absent,
+    );
+    assert.ok((await texts.count()) > 0);
+    const cells = await page.locator('main td').allInnerTexts();
+    assert.ok(cells.includes(present) && !cells.includes(absent), cells.slice(0, 20).join(', '));
+  };
+  const sentence = '2 of 4 optimizers are shown.';
+  await expect_shown(sentence, 'nlopt:bobyqa', 'ga');
+  await open_tab(page, 'problem-q2-e6');
+  await expect_shown(sentence, 'nlopt:bobyqa', 'ga');
+  assert.equal(await filter.getByRole('searchbox').inputValue(), 'cma nlopt:*');
+  // A family less, and all names again.
+  await filter.getByRole('searchbox').fill('');
+  await filter.getByRole('checkbox', { name: 'nlopt (1)' }).click();
+  await expect_shown('3 of 4 optimizers are shown.', 'ga', 'nlopt:bobyqa');
+  await filter.getByRole('searchbox').fill('zzz');
+  assert.equal(await filter.locator('summary').innerText(), '4 of 4 optimizers are shown, because no name matches.');
+  expect_no_faults();
+  await page.close();
+});
+
+test('a term is explained to the pointer, the keyboard and a finger', async () => {
+  const { page, expect_no_faults } = await open_study();
+  await open_tab(page, 'problem-q1-complex');
+  const caption = page.locator('[data-figure=pairs-table-q1-complex] .caption');
+  const term = caption.locator('.term', { hasText: 'A12' });
+  const meaning = page.getByRole('tooltip');
+  await page.mouse.move(2, 2); // on nothing, wherever the page is scrolled to
+  await term.scrollIntoViewIfNeeded();
+  assert.equal(await meaning.count(), 0);
+  await term.hover();
+  assert.match(await meaning.innerText(), /^A12 The probability that a run of one optimizer is better/);
+  const [at, on] = [await meaning.boundingBox(), await term.boundingBox()];
+  assert.ok(at.y >= on.y + on.height || at.y + at.height <= on.y, 'the meaning covers its term');
+  // The pointer may go to the meaning, and back to where nothing is explained.
+  await meaning.hover();
+  assert.equal(await meaning.count(), 1);
+  await page.mouse.move(2, 2);
+  await meaning.waitFor({ state: 'hidden' });
+
+  await term.focus();
+  assert.match(await meaning.innerText(), /^A12 /);
+  assert.equal(await term.getAttribute('aria-describedby'), await meaning.getAttribute('id'));
+  await page.keyboard.press('Escape');
+  assert.equal(await meaning.count(), 0);
+  await page.keyboard.press('Shift+Tab');
+  assert.match(await meaning.innerText(), /^Holm's correction /);
+  await page.keyboard.press('Escape');
+
+  await term.dispatchEvent('click'); // a finger on a system that gives buttons no focus
+  assert.match(await meaning.innerText(), /^A12 /);
+  await page.locator('h1').click();
+  assert.equal(await meaning.count(), 0);
+  expect_no_faults();
+  await page.close();
+});
+
+test('headings explain their terms and still sort', async () => {
+  const { page, expect_no_faults } = await open_study();
+  await open_tab(page, 'problem-q1-complex');
+  const table = page.locator('[data-figure=ranking-q1-complex]');
+  const heading = table.locator('th').getByRole('button', { name: 'mean rank' });
+  await heading.click();
+  assert.match(await page.getByRole('tooltip').innerText(), /^rank of an optimizer Its place among the optimizers/);
+  assert.equal(await table.locator('th[aria-sort=ascending]').innerText(), await heading.innerText());
+  await page.keyboard.press('Escape');
+  await page.locator('[data-figure=convergence-q1-complex]').getByRole('button', { name: 'Table' }).click();
+  await page.locator('dialog').getByRole('button', { name: 'lower quartile' }).focus();
+  assert.match(await page.getByRole('tooltip').innerText(), /^quartiles /);
+  await page.keyboard.press('Escape');
+  assert.equal(await page.getByRole('tooltip').count(), 0);
+  assert.equal(await page.locator('dialog').count(), 1, 'the first Escape only hides the meaning');
+  await page.keyboard.press('Escape');
+  await page.locator('dialog').waitFor({ state: 'detached' });
+  expect_no_faults();
+  await page.close();
+});
+
+test('each design has one name on all pages', async () => {
+  for (const name of ['run', 'front', 'study', 'reproduction']) {
+    const { page, expect_no_faults } = await open_page(browser, join(kFolder, `${name}.html`));
+    const data = JSON.parse(await page.locator('#data').evaluate((element) => element.textContent));
+    const names = new Set([
+      ...data.replays.flatMap((set) => set.designs.map((design) => design.name)),
+      ...(data.arm?.designs ?? []).map((design) => design.name),
+      ...(data.arm?.response.series ?? []).map((series) => series.name),
+      ...(data.arm?.sweep?.series ?? data.sweep?.series ?? []).map((series) => series.name),
+      ...(data.test?.designs ?? []).map((design) => design.name),
+    ]);
+    const own = (data.optimizers ?? []).map((one) => one.label);
+    const usual = (one) => ['winner', 'base controllers', 'published'].includes(one) || own.some((label) => one.startsWith(label));
+    const wrong = [...names].filter((one) => !(name === 'reproduction' ? /^(A\.([5-9]|1[01])|base controllers)$/.test(one) : usual(one)));
+    assert.deepEqual(wrong, [], `names of designs on the page ${name}`);
+    assert.ok(names.has('base controllers'), `${name}: ${[...names].join(', ')}`);
+    // No table has the ids that the data use inside, or the older names.
+    for (const tab of await list_tabs(page)) {
+      await open_tab(page, tab);
+      const texts = await page.$$eval('main td, main th, main svg text', (all) => all.map((one) => one.textContent));
+      assert.deepEqual(
+        texts.filter((text) => /^(base|start design|where the problem starts|thesis, Table A\.\d+)$/.test(text)),
+        [],
+      );
+    }
+    expect_no_faults();
+    await page.close();
+  }
 });
 
 test('a printed page shows the folded verdict', async () => {

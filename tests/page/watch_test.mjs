@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { cpSync, rmSync } from 'node:fs';
+import { cpSync, existsSync, rmSync } from 'node:fs';
 import http from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -8,10 +8,30 @@ import { open_browser, open_page } from './browser.mjs';
 import { kFolder } from './make_pages.mjs';
 
 let browser;
-let server;
+let served;
 let address;
 const kCell = 'cells/q2-e6/ga/r06';
 const study = join(kFolder, 'watched');
+
+// Starts the program and returns it with the address that it prints.
+async function watch(folder) {
+  const server = spawn(process.env.ARMWRIGHT, ['watch', folder], {
+    stdio: ['ignore', 'pipe', 'inherit'],
+  });
+  const said = await new Promise((resolve, reject) => {
+    server.stdout.once('data', (data) => resolve(String(data)));
+    server.once('exit', (code) => reject(new Error(`watch ended with ${code}`)));
+  });
+  return { server, address: said.match(/http:\/\/127\.0\.0\.1:\d+\/[0-9a-f]{32}\//)[0] };
+}
+
+// Sends the signal and returns the exit code.
+function end(child, signal) {
+  child.removeAllListeners('exit');
+  const ended = new Promise((resolve) => child.once('exit', resolve));
+  child.kill(signal);
+  return ended;
+}
 
 // A study that lacks a cell is one that is under way.
 before(async () => {
@@ -21,20 +41,11 @@ before(async () => {
   for (const derived of [kCell, 'result.json', 'verdict.txt', 'tables']) {
     rmSync(join(study, derived), { recursive: true });
   }
-  server = spawn(process.env.ARMWRIGHT, ['watch', study], {
-    stdio: ['ignore', 'pipe', 'inherit'],
-  });
-  const said = await new Promise((resolve, reject) => {
-    server.stdout.once('data', (data) => resolve(String(data)));
-    server.once('exit', (code) => reject(new Error(`watch ended with ${code}`)));
-  });
-  address = said.match(/http:\/\/127\.0\.0\.1:\d+\/[0-9a-f]{32}\//)[0];
+  served = await watch(study);
+  address = served.address;
 });
 after(async () => {
-  server.removeAllListeners('exit');
-  const ended = new Promise((resolve) => server.once('exit', resolve));
-  server.kill('SIGINT');
-  assert.equal(await ended, 0);
+  assert.equal(await end(served.server, 'SIGINT'), 0);
   await browser.close();
 });
 
@@ -52,14 +63,76 @@ function ask(options, path = '/') {
 
 test('the page follows the study to its end', async () => {
   const { page, expect_no_faults } = await open_page(browser, address);
-  assert.match(await page.locator('.state').innerText(), /47 of 48 cells/);
+  const bar = page.getByRole('progressbar', { name: 'Progress' });
+  assert.equal(await bar.getAttribute('aria-valuenow'), '47');
+  assert.equal(await bar.getAttribute('aria-valuemax'), '48');
+  // Nobody runs the study, so it has no speed.
+  assert.match(
+    await bar.getAttribute('aria-valuetext'),
+    /^47 of 48 cells \(97 %\); time left: unknown yet; (simulations per second: unknown yet|no simulation in the last minute); \d+ candidates have failed$/,
+  );
+  assert.equal(await page.locator('.state').innerText(), '');
   cpSync(join(kFolder, 'study', kCell), join(study, kCell), {
     recursive: true,
   });
   await page.waitForFunction(() => document.documentElement.dataset.connection === 'finished');
-  assert.equal(await page.locator('.state').innerText(), '');
+  assert.equal(await page.locator('.state').innerText(), 'Finished');
+  assert.equal(await bar.count(), 0);
   expect_no_faults();
   await page.close();
+});
+
+// Watches a program at work until its page shows the throughput and `sign`, and looks at its bar.
+async function check_progress(command, out, unit, sign) {
+  const folder = join(kFolder, out);
+  rmSync(folder, { recursive: true, force: true });
+  const worker = spawn(process.env.ARMWRIGHT, [...command, '--out', folder, '--quiet'], { stdio: 'ignore' });
+  try {
+    await new Promise((resolve) => {
+      const look = setInterval(() => {
+        if (existsSync(join(folder, sign))) {
+          clearInterval(look);
+          resolve();
+        }
+      }, 50);
+    });
+    const { server, address: its_address } = await watch(folder);
+    const { page, expect_no_faults } = await open_page(browser, its_address);
+    await page.waitForFunction(() =>
+      / left; [\d.]+ simulations per second in the last minute/.test(document.querySelector('[role=progressbar]')?.ariaValueText),
+    );
+    const bar = page.getByRole('progressbar');
+    const before = Number(await bar.getAttribute('aria-valuenow'));
+    assert.match(await bar.getAttribute('aria-valuetext'), new RegExp(`^${before} of \\d+ ${unit} \\(\\d+ %\\); about \\d+ (s|min|h)`));
+    return { page, bar, before, expect_no_faults, server, worker };
+  } catch (error) {
+    worker.kill('SIGTERM');
+    throw error;
+  }
+}
+
+test('the page of a run in progress has its speed, the time left and its failures', async () => {
+  const command = ['optimize', 'q1-complex', '--engine', 'articulated', '--budget', '10000000', '--jobs', '1'];
+  const watched = await check_progress(command, 'run-in-progress', 'cases', 'journal');
+  const { page, bar, before } = watched;
+  await page.waitForFunction((old) => Number(document.querySelector('[role=progressbar]').ariaValueNow) > old, before);
+  assert.equal(await bar.getAttribute('aria-valuemax'), '10000000');
+  watched.expect_no_faults();
+  await page.close();
+  await end(watched.worker, 'SIGTERM');
+  assert.equal(await end(watched.server, 'SIGINT'), 0);
+});
+
+test('the page of a study in progress has the cells that are running', async () => {
+  const command = ['compare', '--problems', 'q1-complex', '--optimizers', 'ga,cmaes', '--replicates', '3', '--engine', 'articulated'];
+  const watched = await check_progress([...command, '--budget', '1000000', '--jobs', '1'], 'study-in-progress', 'cells', 'study.toml');
+  const { page } = watched;
+  const row = page.locator('[data-figure=running] tbody tr').first();
+  assert.match(await row.innerText(), /q1-complex.*1000000.*process \d+ on /s);
+  watched.expect_no_faults();
+  await page.close();
+  await end(watched.worker, 'SIGTERM');
+  assert.equal(await end(watched.server, 'SIGINT'), 0);
 });
 
 test('data that have not changed are not sent again', async () => {

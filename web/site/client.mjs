@@ -1,6 +1,6 @@
 // In the reader's browser: search, theme, copying, the menu of small screens. Pages can be read without it.
 import MiniSearch from 'minisearch';
-import { kSearch, make_excerpt } from './search.mjs';
+import { find_parts, kSearch, make_excerpt } from './search.mjs';
 
 const root = document.body.dataset.root;
 const kMost = 12; // results shown
@@ -43,6 +43,22 @@ for (const button of document.querySelectorAll('.copy')) {
     setTimeout(() => (button.textContent = 'Copy'), 1500);
   });
 }
+
+// ---- Boxes that scroll: the keyboard reaches them while something in them is cut ----
+const observer = new ResizeObserver((entries) => {
+  for (const { target: box } of entries) {
+    const is_cut = box.scrollWidth > box.clientWidth;
+    const attributes = { tabindex: '0', role: 'group', 'aria-label': box.tagName === 'PRE' ? 'Code' : 'Table' };
+    for (const [name, value] of Object.entries(attributes)) {
+      if (is_cut) {
+        box.setAttribute(name, value);
+      } else {
+        box.removeAttribute(name);
+      }
+    }
+  }
+});
+document.querySelectorAll('.table, figure.code pre').forEach((box) => observer.observe(box));
 
 // ---- The menu ----
 const menu = find('menu');
@@ -107,7 +123,7 @@ async function search() {
     found.hidden = true;
     return;
   }
-  const results = (await load_index()).search(words).slice(0, kMost);
+  const results = find_parts(await load_index(), words).slice(0, kMost);
   if (input.value.trim() !== words) {
     return; // typed on meanwhile
   }

@@ -30,11 +30,14 @@ function make_contents(headings) {
 
 function make_neighbours(navigation, page) {
   const index = navigation.pages.indexOf(page);
-  const link = (other, name, word) =>
+  const link = (other, name, word, label = other?.label) =>
     other
-      ? `<a class="${name}" href="${find_way(page.place, other.place)}"><span>${word}</span>${escape_html(other.label)}</a>`
+      ? `<a class="${name}" href="${find_way(page.place, other.place)}"><span>${word}</span>${escape_html(label)}</a>`
       : '<span></span>';
-  return `<nav class="neighbours" aria-label="Neighbours">${link(navigation.pages[index - 1], 'before', 'Before')}${link(navigation.pages[index + 1], 'after', 'Next')}</nav>`;
+  // Where the page names no next step, the next page is one; after the last page, the first.
+  const next = navigation.pages.find(({ source }) => source === page.step?.source) ?? navigation.pages[index + 1] ?? navigation.pages[0];
+  const words = page.step?.words.replaceAll('`', '').replace(/^./, (letter) => letter.toUpperCase());
+  return `<nav class="neighbours" aria-label="Neighbours">${link(navigation.pages[index - 1], 'before', 'Before')}${link(next, 'after', 'Next', words)}</nav>`;
 }
 
 // The theme is set before anything is drawn, so that a dark page never flashes white.

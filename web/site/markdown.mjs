@@ -78,14 +78,31 @@ export function render_fence(info, text) {
   return `<figure class="code ${escape_html(language)}">${title}${copy}<pre><code>${body}</code></pre></figure>\n`;
 }
 
+const kLongName = 20; // characters
+
+// Lets a line break at the joints of a long name: after . : / _ = - and before a capital letter. Else the name of a test or
+// a path takes the width of the other columns of its table.
+export function render_name(text) {
+  const pieces = text.length > kLongName ? text.split(/(?<=[.:/_=-])(?=\w)|(?<=[a-z])(?=[A-Z])/) : [text];
+  return `<code>${pieces.map(escape_html).join('<wbr>')}</code>`;
+}
+
 // render(text, resolve): {html, headings: [{level, slug, text}], parts: [{slug, title, text}], links: [target]}.
 // `resolve(target, is_image)` gives a link's address in the site.
 export function make_renderer() {
   const markdown = new MarkdownIt({ html: true, linkify: false, typographer: false });
   markdown.renderer.rules.fence = (tokens, index) => render_fence(tokens[index].info, tokens[index].content);
+  markdown.renderer.rules.code_inline = (tokens, index) => render_name(tokens[index].content);
   markdown.renderer.rules.code_block = (tokens, index) => {
     const text = tokens[index].content;
     return render_fence(/^armwright /.test(text) ? 'sh' : 'text', text);
+  };
+  // A heading without words, such as that of a column of notes, is no heading.
+  markdown.renderer.rules.th_open = (tokens, index, options, env, self) => {
+    const tag = tokens[index + 1].content === '' ? 'td' : 'th';
+    tokens[index].tag = tag;
+    tokens[index + 2].tag = tag;
+    return self.renderToken(tokens, index, options);
   };
   markdown.renderer.rules.table_open = () => '<div class="table"><table>\n';
   markdown.renderer.rules.table_close = () => '</table></div>\n';
@@ -93,7 +110,14 @@ export function make_renderer() {
     level: [1, 2, 3, 4],
     slugify: make_slug,
     tabIndex: false,
-    permalink: anchor.permalink.linkInsideHeader({ symbol: '#', placement: 'after', class: 'anchor', ariaHidden: true }),
+    // For the mouse: it shows where to copy the address of a part. The keyboard would stop at every heading.
+    permalink: anchor.permalink.linkInsideHeader({
+      symbol: '#',
+      placement: 'after',
+      class: 'anchor',
+      ariaHidden: true,
+      renderAttrs: () => ({ tabindex: '-1' }),
+    }),
   });
 
   return (text, resolve) => {

@@ -39,7 +39,17 @@ export function read_title(text, page) {
   return heading[1].trim();
 }
 
-// {title, sections: [{title, folded, pages: [page]}], pages: [page]} with pages as {source, place, title, label, text, section}.
+const kStep = /\n+Next: \[(.+)\]\(([^()]+)\)\.\n*$/;
+
+// Splits the next step from the text of a page: its last line, "Next: [words](page.md).".
+function split_step(text, source) {
+  const [line, words, target] = text.match(kStep) ?? [];
+  return line === undefined
+    ? { text, step: null }
+    : { text: `${text.slice(0, -line.length)}\n`, step: { words, source: posix.join(dirname(source), target) } };
+}
+
+// {title, sections: [{title, folded, pages: [page]}], pages: [page]} with pages as {source, place, title, label, text, step, section}.
 export function read_navigation(root) {
   const file = 'docs/site.json';
   const navigation = JSON.parse(readFileSync(join(root, file), 'utf8'));
@@ -55,7 +65,7 @@ export function read_navigation(root) {
     seen.set(source, section);
     const text = readFileSync(join(root, source), 'utf8');
     const title = read_title(text, source);
-    return { source, place: place_page(source), title, label: label ?? title.replaceAll('`', ''), text, section };
+    return { source, place: place_page(source), title, label: label ?? title.replaceAll('`', ''), section, ...split_step(text, source) };
   };
   const sections = navigation.sections.map(({ title, folded = false, pages, folder }) => {
     const entries = [...pages];
@@ -69,5 +79,10 @@ export function read_navigation(root) {
   if (orphans.length > 0) {
     throw new SiteError(`${file}: these pages stand in no section, so that nobody would find them: ${orphans.join(', ')}`);
   }
-  return { title: navigation.title, sections, pages: sections.flatMap((section) => section.pages) };
+  const pages = sections.flatMap((section) => section.pages);
+  const lost = pages.filter(({ step }) => step !== null && !pages.some(({ source }) => source === step.source));
+  if (lost.length > 0) {
+    throw new SiteError(lost.map(({ source, step }) => `${source}: its next step ${step.source} is no page of the site`).join('\n'));
+  }
+  return { title: navigation.title, sections, pages };
 }

@@ -36,10 +36,21 @@ export interface PageBase {
   command: string; // the shell command that made the run or study
   finished: boolean;
   progress: { done: number; total: number; unit: string } | null; // null if it is finished
+  watched: Watched | null; // null unless `armwright watch` serves the page
   notes: string[]; // whole sentences: missing parts of the page with their reasons, and warnings
   facts: Fact[]; // about the run or study, in the order to show
   robots: Robot[];
   replays: ReplaySet[];
+}
+
+// The progress at the time when `armwright watch` made the page.
+export interface Watched {
+  simulations: number | null; // cases simulated so far; null for a reproduction
+  per_second: number | null; // simulations in the last minute; null while it is unknown
+  left_s: number | null; // estimated; null while it is unknown
+  running: { cell: string; process: string; done: number | null; total: number }[]; // cases of the cells that are running
+  failed_evaluations: number; // candidates with a simulation that failed
+  failures: { where: string; state: string; reason: string }[]; // cells, then the newest candidates
 }
 
 // ---------------------------------------------------------------- the arm
@@ -86,7 +97,7 @@ export interface Robot {
 
 export interface DesignInfo {
   id: string;
-  name: string; // "winner", "base controllers", "thesis, Table A.5"
+  name: string; // "winner", "base controllers", "published"
   total_torque_n_m: number | null;
   effort_limits: [number, number][]; // one per joint
 }
@@ -231,6 +242,14 @@ export interface Headline {
   failures: number | null; // test cases that an arm failed
   test_cases: number | null;
   total_torque_n_m: number | null;
+  times: RunTimes | null; // null if the run has none, as runs of version 1.0
+}
+
+// How long a run took, over the lives of its process that were not killed.
+export interface RunTimes {
+  wall_s: number;
+  cpu_s: number | null; // null if other processes simulated cases
+  lives: number;
 }
 
 // A quantity that must not exceed a limit on any test case, and the result.
@@ -307,7 +326,8 @@ export interface ArmEvidence {
   parameters: { name: string; unit: string; is_variable: boolean; at_bound: string; values: (number | null)[] }[];
   // The results of each design on the test set, and the published values.
   results: {
-    design: string;
+    design: string; // the id of one of `designs`
+    source: string; // "thesis, Table A.5", or "" if its file names none
     mean_m: number | null;
     median_m: number | null;
     p95_m: number | null;
@@ -392,7 +412,8 @@ export interface StudyCell {
   value: number | null; // null: infinite
   cases: number;
   evaluations: number;
-  seconds: number | null; // CPU or wall time, if it was recorded; no run records it so far
+  wall_s: number | null; // null if it was not recorded, as in studies of version 1.0
+  cpu_s: number | null; // null also if other processes simulated cases
   failure: string; // of the optimizer
   failures: number; // failed test cases
   x: number[]; // the winner, 9 significant digits; empty if there is none
@@ -514,8 +535,10 @@ export interface ReproductionData extends PageBase {
     median_m: number | null;
     p95_m: number | null;
     worst_m: number | null;
+    standard_error_m: number | null; // of the mean
     failures: number;
     torque_n_m: number;
+    reason: string; // why our numbers may differ from the published ones; "" if it is not known
     command: string;
   }[];
   // The designs that were optimized again, because the thesis does not give them.
@@ -526,6 +549,7 @@ export interface ReproductionData extends PageBase {
     mean_m: number | null;
     torque_n_m: number;
     published_torque_n_m: number | null;
+    reason: string; // as in rows
     folder: string;
     command: string;
   }[];
@@ -536,4 +560,69 @@ export interface ReproductionData extends PageBase {
   momentary: { name: string; replay: string; design: string; case: string }[];
 }
 
-export type PageData = RunData | StudyData | ReproductionData;
+// ---------------------------------------------------------------- two runs or two studies, A and B
+
+export interface ComparisonData extends PageBase {
+  kind: 'comparison';
+  settings: ComparedSetting[]; // all that decide the course or the result, by name
+  runs: ComparedRuns | null; // null for studies
+  studies: ComparedStudies | null; // null for runs
+}
+
+export interface ComparedSetting {
+  name: string; // "problem.task.speed_m_per_s"
+  a: string | null; // null if A does not have it
+  b: string | null;
+}
+
+// The pages of both runs without replays. The replay of the comparison has both winners on the cases
+// that both have.
+export interface ComparedRuns {
+  a: RunData;
+  b: RunData;
+  same_cases: boolean; // both winners were tested on the same cases
+  paired: PairedErrors | null; // null without common test cases
+}
+
+// The winners' errors case by case. A win is a case in which A is better.
+export interface PairedErrors {
+  cases: number;
+  wins: number;
+  ties: number;
+  losses: number;
+  p: number; // of the signed-rank test
+  a12: number; // the probability that a case of A is better than a case of B
+}
+
+export interface ComparedStudies {
+  a: StudyData;
+  b: StudyData;
+  cells: ComparedCell[]; // the problems and optimizers that both have
+}
+
+// One optimizer on one problem in both studies. The studies have no pairs, and p is null, if they do
+// not draw their replicates from the same seed. A win is a replicate in which A is better.
+export interface ComparedCell {
+  problem: string;
+  optimizer: string;
+  quantity: Quantity;
+  a: ComparedSide;
+  b: ComparedSide;
+  pairs: number;
+  wins: number;
+  ties: number;
+  losses: number;
+  a12: number | null; // the probability that a run of A is better than a run of B; null without runs
+  p: number | null; // of the signed-rank test
+  p_holm: number | null; // after Holm's correction over all cells
+  better: 'a' | 'b' | null; // null if the test does not tell them apart
+}
+
+export interface ComparedSide {
+  runs: number; // that have ended
+  q1: number | null;
+  median: number | null;
+  q3: number | null;
+}
+
+export type PageData = RunData | StudyData | ReproductionData | ComparisonData;

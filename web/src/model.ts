@@ -4,6 +4,7 @@
 import type { EChartsOption } from './charts/echarts';
 import type { Fact, PageBase, ReplaySet } from './data';
 import type { Look } from './charts/look';
+import type { Range } from './charts/zoom';
 
 export type Value = string | number | null;
 
@@ -51,10 +52,11 @@ export interface Figure {
   width?: 'half' | 'full'; // of the page; default half
   height?: number; // pixels; default 340
   choices?: Choice[];
-  // Present if the abscissa is the time (s) of this replay case. The figure then shares the cursor
-  // of the replay.
-  time?: { replay: string; case: (picked: Picked) => string };
-  draw(look: Look, picked: Picked): EChartsOption;
+  // Present if the abscissa is the time (s) of this replay case. The figure then shares the cursor of
+  // the replay. If `panels` is present, each panel shows one part of the case and its time begins
+  // with that part.
+  time?: { replay: string; case: (picked: Picked) => string; panels?: (picked: Picked) => Range[] };
+  draw(look: Look, picked: Picked, zoom?: Range): EChartsOption; // with `zoom`, at least this part of the abscissa
   table(picked: Picked): DataTable; // the drawn numbers, in the drawn units
 }
 

@@ -21,6 +21,20 @@ export function format_number(value: number | null | undefined, digits = 4): str
   return value.toFixed(Math.min(20, Math.max(0, digits - 1 - magnitude)));
 }
 
+// Formats a time in seconds: "0.42 s", "3 min 5 s", "40 min", "2 h 10 min".
+export function format_duration(seconds: number): string {
+  if (seconds < 59.5) {
+    return (seconds < 9.95 ? format_number(seconds, 2) : String(Math.round(seconds))) + ' s';
+  }
+  const whole = Math.round(seconds);
+  const minutes = Math.round(seconds / 60);
+  return whole < 600
+    ? `${Math.floor(whole / 60)} min ${whole % 60} s`
+    : minutes < 60
+      ? `${minutes} min`
+      : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+}
+
 export function scale(values: (number | null)[], factor: number): (number | null)[] {
   return values.map((value) => (value === null ? null : value * factor));
 }

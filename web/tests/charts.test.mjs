@@ -3,13 +3,28 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { load } from './load.mjs';
 
-const { decimate, fit_width, kLight, kNarrow_px, make_axis, make_chart, make_panels, shorten, shorten_all } = await load(`
+const {
+  can_zoom,
+  decimate,
+  fit_width,
+  kLight,
+  kNarrow_px,
+  make_axis,
+  make_chart,
+  make_line,
+  make_panels,
+  read_curves,
+  shorten,
+  shorten_all,
+  zoom_in,
+} = await load(`
   export { decimate } from './src/charts/decimate';
   export { kLight } from './src/charts/look';
   export { make_panels } from './src/charts/marks';
   export { shorten, shorten_all } from './src/charts/names';
   export { fit_width, kNarrow_px } from './src/charts/narrow';
-  export { make_axis, make_chart } from './src/charts/parts';
+  export { make_axis, make_chart, make_line } from './src/charts/parts';
+  export { can_zoom, read_curves, zoom_in } from './src/charts/zoom';
 `);
 
 test('decimation keeps both ends and every extreme', () => {
@@ -103,4 +118,61 @@ test('panels of a narrow chart stand below each other', () => {
     option.xAxis.map((axis) => axis.name !== ''),
     [false, false, false, false, false, true],
   );
+});
+
+const make_curves = (lists, y = {}) =>
+  make_chart(
+    kLight,
+    [make_axis(kLight, 'x', 'time (s)')],
+    [make_axis(kLight, 'y', 'error (mm)', y)],
+    lists.map((points, i) => make_line(kLight, i, `curve ${i}`, points)),
+  );
+const kSlope = [
+  [0, 0],
+  [1, 10],
+  [2, 100],
+  [3, 1000],
+];
+
+test('curves are read between their points, each at the same place', () => {
+  const level = [
+    [0.5, 4],
+    [1.7, null],
+    [2.5, 8],
+  ];
+  const read = (x, selected) => read_curves(make_curves([kSlope, level]), 0, x, selected).map((one) => [one.name, one.value]);
+  assert.deepEqual(read(0.5), [
+    ['curve 0', 5],
+    ['curve 1', 4],
+  ]);
+  assert.deepEqual(read(3), [['curve 0', 1000]]);
+  assert.deepEqual(read(3.1), []);
+  assert.deepEqual(read(1.7), [['curve 0', 73]]);
+  assert.deepEqual(read(0.5, { 'curve 0': false }), [['curve 1', 4]]);
+  const [on_log] = read_curves(make_curves([kSlope], { log: true }), 0, 1.5);
+  assert.ok(Math.abs(on_log.value - Math.sqrt(1000)) < 1e-9, `${on_log.value}`);
+});
+
+test('a zoom shows the range and the values in it, and leaves other panels alone', () => {
+  const drawn = make_curves([
+    kSlope,
+    [
+      [0, -9999],
+      [3, -9999],
+    ],
+  ]);
+  const { xAxis, yAxis } = zoom_in(kLight, drawn, [{ from: 1, to: 2 }]);
+  assert.deepEqual([xAxis[0].min, xAxis[0].max], [1, 2]);
+  assert.ok(yAxis[0].min <= 10 && yAxis[0].min >= 0 && yAxis[0].max >= 100 && yAxis[0].max < 120, `${yAxis[0].min} to ${yAxis[0].max}`);
+  assert.ok(xAxis[0].axisLabel.customValues.every((tick) => tick >= 1 && tick <= 2));
+  assert.ok(yAxis[0].axisTick.customValues.length >= 3);
+  assert.deepEqual(zoom_in(kLight, drawn, [null]), drawn);
+});
+
+test('only curves over a growing number can be zoomed', () => {
+  assert.ok(can_zoom(make_curves([kSlope])));
+  assert.ok(!can_zoom(make_curves([[...kSlope, [1, 5]]])));
+  assert.ok(!can_zoom(make_curves([kSlope.slice(0, 2)])));
+  const categories = { ...make_curves([kSlope]), xAxis: [make_axis(kLight, 'x', '', { categories: ['a', 'b', 'c', 'd'] })] };
+  assert.ok(!can_zoom(categories));
 });

@@ -3,8 +3,8 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { load } from './load.mjs';
 
-const { format_number, unpack, unpack_indices, to_csv } = await load(`
-  export { format_number, unpack, unpack_indices } from './src/numbers';
+const { format_duration, format_number, unpack, unpack_indices, to_csv } = await load(`
+  export { format_duration, format_number, unpack, unpack_indices } from './src/numbers';
   export { to_csv } from './src/csv';
 `);
 
@@ -16,6 +16,23 @@ test('numbers have so many digits, and an exponent only where that is shorter', 
   assert.equal(format_number(0.00000025, 2), '2.5e-7');
   assert.equal(format_number(0), '0');
   assert.equal(format_number(140), '140');
+});
+
+test('durations have the units that a person would say', () => {
+  assert.deepEqual([0, 0.4234, 9.94, 9.96, 59.4, 59.6, 185, 599.4, 599.6, 3569, 3571, 7830].map(format_duration), [
+    '0 s',
+    '0.42 s',
+    '9.9 s',
+    '10 s',
+    '59 s',
+    '1 min 0 s',
+    '3 min 5 s',
+    '9 min 59 s',
+    '10 min',
+    '59 min',
+    '1 h 0 min',
+    '2 h 11 min',
+  ]);
 });
 
 test('what does not exist is a dash, never a number', () => {

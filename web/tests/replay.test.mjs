@@ -6,10 +6,11 @@ import { dirname, join } from 'node:path';
 import test from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { build } from 'esbuild';
+import { load } from './load.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const source = join(here, '../src/replay');
-const parts = ['chain', 'timeline', 'colours', 'scenario'].map((name) => `export * from './${name}';`).join('\n');
+const parts = ['chain', 'timeline', 'colours', 'scenario', 'load'].map((name) => `export * from './${name}';`).join('\n');
 const bundle = await build({
   stdin: { contents: parts, resolveDir: source, loader: 'ts' },
   bundle: true,
@@ -17,6 +18,7 @@ const bundle = await build({
   target: 'es2020',
   write: false,
 });
+const { kDark, kLight } = await load(`export { kDark, kLight } from './src/charts/look';`);
 const replay = await import(`data:text/javascript;base64,${Buffer.from(bundle.outputFiles[0].contents).toString('base64')}`);
 
 const robots = JSON.parse(readFileSync(join(here, 'data/kinematics.json'), 'utf8'));
@@ -119,6 +121,47 @@ test('colours are ordered by lightness, away from the background', () => {
     assert.deepEqual(replay.find_colour(scale, 5), scale.stops[scale.stops.length - 1]);
     assert_near([replay.find_share(scale, Math.sqrt(0.0001 * 0.1))], [0.5], 1e-12);
     assert.equal(replay.list_decades(scale).length, 4);
+  }
+});
+
+test('links are painted by the share of the torque limit on its side, and by the way to the end of the range', () => {
+  const joints = [
+    { lower: -1, upper: 3 },
+    { lower: -2, upper: 2 },
+    { lower: null, upper: null },
+  ];
+  const limits = [
+    [-10, 40],
+    [-10, 40],
+    [null, null],
+  ];
+  const track = { count: 2, limits, effort: Float32Array.from([0, 0, 0, 10, -10, 7]) };
+  const scenario = { chain: { robot: { joints } } };
+  const shares = (moment, paint) => replay.find_shares(scenario, track, moment, [1, 1.9, 5], paint);
+  assert.deepEqual(shares(2, 'torque'), [0.25, 1, null]);
+  assert.deepEqual(shares(0, 'torque'), [null, null, null]);
+  assert.deepEqual(shares(3, 'torque'), [null, null, null]);
+  const [middle, near, free] = shares(2, 'position');
+  assert_near([middle, near], [0, 0.95], 1e-12);
+  assert.equal(free, null);
+  assert.deepEqual([0.254, 1, 1.01, null].map(replay.describe_share), ['25 %', 'at the limit', 'at the limit', '–']);
+});
+
+test('the colours of links are ordered by lightness, and a limit has the colour of what is bad', () => {
+  for (const look of [kLight, kDark]) {
+    for (const [paint, shares] of Object.entries({ torque: [0, 0.1, 0.3, 0.99], position: [0.49, 0.5, 0.8, 0.99] })) {
+      const at = shares.map((share) => replay.find_colour_of(share, look, paint));
+      const lightness = at.map((colour) => [1, 3, 5].reduce((sum, i) => sum + parseInt(colour.slice(i, i + 2), 16), 0));
+      const sorted = lightness.slice().sort((a, b) => (look === kLight ? b - a : a - b));
+      assert.deepEqual(lightness, sorted);
+      assert.equal(new Set(at).size, 4);
+      assert.equal(replay.find_colour_of(1, look, paint), look.bad);
+      assert.equal(replay.find_colour_of(null, look, paint), look.muted);
+      assert.deepEqual(
+        replay.list_paints(look, paint).map((one) => one.colour),
+        [...at, look.bad],
+      );
+    }
   }
 });
 

@@ -4,6 +4,8 @@ import test from 'node:test';
 import { load } from './load.mjs';
 
 const {
+  choose_rows,
+  describe_progress,
   draw_svg,
   find_saturated,
   get_initial_picks,
@@ -18,8 +20,10 @@ const {
 } = await load(`
   export { draw_svg, get_initial_picks } from './src/charts/svg';
   export { kDark, kLight } from './src/charts/look';
+  export { describe_progress } from './src/figures/watched';
   export { make_page } from './src/figures/page';
   export { find_saturated } from './src/figures/joints';
+  export { choose_rows } from './src/figures/replay_access';
   export { make_histogram } from './src/figures/test_errors';
   export { group_variables } from './src/figures/variables';
   export { make_replay_set, make_reproduction_data, make_run_data } from './tests/fixtures/pages';
@@ -231,12 +235,35 @@ test('a run on a function has only what a function has', () => {
   }
 });
 
-test('points name what made them', () => {
-  const figure = find(make_run_data(), 'distance-response');
+test('points name what made them, in the order of their distances', () => {
+  const data = make_run_data();
+  const figure = find(data, 'distance-response');
   const option = figure.draw(kLight, get_initial_picks(figure));
-  const point = option.series.find((one) => one.type === 'line').data[3];
+  const points = option.series.find((one) => one.type === 'line').data;
+  points.slice(1).forEach((point, i) => assert.ok(point.value[0] > points[i].value[0], `${point.value[0]}`));
+  const { distances_m } = data.arm.response;
+  const point = points[points.length - 1];
+  assert.equal(point.value[0], 100 * Math.max(...distances_m));
   assert.equal(point.command, 'armwright evaluate table-a5');
-  assert.match(point.note, /Move 4, .* over 500 cases\./);
+  assert.match(point.note, new RegExp(`^Move ${1 + distances_m.indexOf(Math.max(...distances_m))}, .* over 500 cases\\.`));
+  const { ticks, log } = { ticks: option.xAxis.axisTick.customValues, log: option.xAxis.type === 'log' };
+  assert.ok(log && ticks.length >= 3, `${ticks}`);
+  assert.deepEqual(
+    ticks,
+    ticks.slice().sort((a, b) => a - b),
+  );
+});
+
+test('errors start on a logarithmic axis, the first design over the others, and the reader may choose a linear one', () => {
+  for (const id of ['distance-response', 'fitness']) {
+    const figure = find(make_run_data(), id);
+    const initial = get_initial_picks(figure);
+    assert.equal(figure.draw(kLight, initial).yAxis.type, 'log');
+    assert.equal(figure.draw(kLight, { ...initial, scale: 'linear' }).yAxis.type, 'value');
+  }
+  const figure = find(make_run_data(), 'distance-response');
+  const lines = figure.draw(kLight, get_initial_picks(figure)).series.filter((one) => one.type === 'line');
+  lines.slice(1).forEach((line) => assert.ok(line.z < lines[0].z));
 });
 
 test('published means stand beside ours', () => {
@@ -245,10 +272,32 @@ test('published means stand beside ours', () => {
   assert.match(svg, /Ramp: 5\.80 mm \(published 12\.6\)/);
 });
 
-test('the cursor is shared only where the clock is the case’s', () => {
-  const figure = find(make_run_data(), 'momentary-error');
-  assert.equal(figure.time.case({ ...get_initial_picks(figure) }), '');
-  assert.equal(figure.time.case({ ...get_initial_picks(figure), classes: 'all', case: 'train/1:1' }), 'train/1:1');
+test('panels of moves know their part of the time of the case', () => {
+  const data = make_run_data();
+  const figure = find(data, 'momentary-error');
+  const { replay, case: get_case, panels } = figure.time;
+  const initial = get_initial_picks(figure);
+  assert.equal(replay, data.replays[0].id);
+  assert.equal(get_case({ ...initial, case: 'train/1:1' }), 'train/1:1');
+  assert.deepEqual(panels({ ...initial, classes: 'all' }), []);
+  const [segment] = data.replays[0].cases[0].segments.slice(1);
+  const [part] = panels({ ...initial, classes: '2' });
+  const period_s = data.replays[0].task.control_period_s;
+  assert.equal(part.from, segment.first_step * period_s);
+  assert.equal(part.to, (segment.first_step + segment.steps) * period_s);
+});
+
+test('a zoomed curve has every row of its part of the time', () => {
+  const set = make_replay_set('set'); // a control period of 10 ms
+  const values = Float32Array.from({ length: 10000 }, (_, i) => (i % 7 === 0 ? NaN : Math.sin(i)));
+  const rows = choose_rows(set, values, { from: 20, to: 21 });
+  assert.deepEqual(
+    rows,
+    Array.from({ length: rows.length }, (_, i) => rows[0] + i),
+  );
+  assert.ok((rows[0] + 1) * 0.01 <= 20 && (rows[rows.length - 1] + 1) * 0.01 >= 21, `${rows[0]} to ${rows[rows.length - 1]}`);
+  assert.ok(rows.length < 110);
+  assert.ok(choose_rows(set, values).length <= 2000);
 });
 
 test('a histogram counts every number once, the largest too', () => {
@@ -289,8 +338,13 @@ test('the tiles have the result of the run and its effort', () => {
   const data = make_run_data();
   assert.deepEqual(
     find(data, 'tiles').tiles.map((tile) => `${tile.label}: ${tile.value}`),
-    ['Mean error: 50 → 6.10 mm', 'Failed test cases: ✓ 0 of 500', 'Total torque: 930000 N m', 'Simulations: 2800', 'Started: 2026-01-31'],
+    ['Mean error: 50 → 6.10 mm', 'Failed test cases: ✓ 0 of 500', 'Total torque: 930000 N m', 'Simulations: 2800', 'Time taken: 2 min 5 s'],
   );
+  assert.equal(get_tile(data, 'Time taken').detail, '4 min 0 s of processor time; in 2 parts; started 2026-01-31, 12:34 UTC');
+  data.headline.times = { wall_s: 3, cpu_s: null, lives: 1 };
+  assert.equal(get_tile(data, 'Time taken').detail, 'processor time unknown; started 2026-01-31, 12:34 UTC');
+  data.headline.times = null;
+  assert.equal(get_tile(data, 'Started').value, '2026-01-31');
   const error = get_tile(data, 'Mean error');
   assert.equal(error.detail, 'better by a factor of 8.20: base controllers → winner, on 500 cases of test/2');
   data.headline.value = 0.1;
@@ -315,6 +369,7 @@ test('tiles without a record are left out', () => {
     failures: null,
     test_cases: null,
     total_torque_n_m: null,
+    times: null,
   };
   const list = () => find(data, 'tiles').tiles.map((tile) => `${tile.label}: ${tile.value}`);
   assert.deepEqual(list(), ['f: 3.25e-7', 'Evaluated cases: 2800']);
@@ -373,4 +428,43 @@ test('the health card of a healthy winner, and of one that was not measured', ()
   health.failing = 'bad';
   health.failures = 2;
   assert.match(find(data, 'health').verdict.text, /^✗ The winner is not healthy: 2 of 500 test cases failed\. Not measured/);
+});
+
+// ---------------------------------------------------------------- a run in progress
+
+test('the words beside the progress bar say what is known', () => {
+  assert.deepEqual(describe_progress(make_run_data()), []);
+  const data = { ...make_run_data(), finished: false, progress: { done: 1999, total: 4000, unit: 'cases' } };
+  assert.deepEqual(describe_progress(data), ['1999 of 4000 cases (49 %)']);
+  data.watched = { simulations: 1999, per_second: null, left_s: null, running: [], failed_evaluations: 0, failures: [] };
+  assert.deepEqual(describe_progress(data), [
+    '1999 of 4000 cases (49 %)',
+    'time left: unknown yet',
+    'simulations per second: unknown yet',
+    'no candidate has failed',
+  ]);
+  data.watched = { ...data.watched, per_second: 12.345, left_s: 162, failed_evaluations: 1 };
+  assert.deepEqual(describe_progress(data).slice(1), [
+    'about 2 min 42 s left',
+    '12.3 simulations per second in the last minute',
+    '1 candidate has failed',
+  ]);
+});
+
+test('a watched page has the running cells first and the failures after the headline', () => {
+  const data = { ...make_run_data(), finished: false, progress: { done: 0, total: 4, unit: 'cells' } };
+  const ids = () => make_page(data).tabs[0].items.map((item) => item.id);
+  const usual = ids();
+  data.watched = {
+    simulations: 9,
+    per_second: 1,
+    left_s: 1,
+    running: [{ cell: 'q1/ga/r01', process: 'process 7 on host', done: 25, total: 100 }],
+    failed_evaluations: 1,
+    failures: [{ where: 'evaluation 3', state: 'diverged', reason: 'joint_2 moves at 1e9 rad/s' }],
+  };
+  assert.deepEqual(ids(), ['running', usual[0], 'failures-so-far', ...usual.slice(1)]);
+  assert.deepEqual(find(data, 'running').table.rows, [['q1/ga/r01', 25, 100, 25, 'process 7 on host']]);
+  data.finished = true;
+  assert.deepEqual(ids(), usual);
 });

@@ -1,4 +1,5 @@
 // The documentation's site: its parts by themselves, then all of the documentation: no page without a way to it, no link that leads nowhere.
+import MiniSearch from 'minisearch';
 import assert from 'node:assert/strict';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -7,9 +8,9 @@ import test, { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { build_site, check_links, render_pages } from '../site/build.mjs';
 import { find_dead_addresses } from '../site/links.mjs';
-import { make_renderer, make_slug, render_fence, render_session } from '../site/markdown.mjs';
+import { make_renderer, make_slug, render_fence, render_name, render_session } from '../site/markdown.mjs';
 import { SiteError, place_page, read_navigation } from '../site/navigation.mjs';
-import { kSearch, make_documents, make_excerpt } from '../site/search.mjs';
+import { find_parts, kSearch, make_documents, make_excerpt } from '../site/search.mjs';
 
 const kRoot = join(dirname(fileURLToPath(import.meta.url)), '../..');
 const scratch = mkdtempSync(join(tmpdir(), 'armwright-site-'));
@@ -112,6 +113,37 @@ test('a site with dead links, forgotten pages or pages twice is not built', asyn
   );
 });
 
+test('the last line of a page names its next step, and the site shows it at the foot', async () => {
+  const root = make_root({
+    'docs/index.md': '# I\n\ntext\n\nNext: [how `b` works](a/b.md).\n',
+    'docs/c.md': '# C\n',
+    'docs/a/b.md': '# B\n',
+  });
+  const out = join(scratch, 'steps');
+  await build_site(root, out);
+  const read = (place) => readFileSync(join(out, place), 'utf8');
+  assert.match(read('index.html'), /class="after" href="a\/b\.html"><span>Next<\/span>How b works</);
+  assert.doesNotMatch(read('index.html'), /Next: /);
+  assert.match(read('c.html'), /class="after" href="a\/b\.html"><span>Next<\/span>B</);
+  assert.match(read('a/b.html'), /class="after" href="\.\.\/index\.html"/); // after the last page, the first
+  await refuse(
+    make_root({ 'docs/index.md': '# I\n\nNext: [x](y.md).\n' }),
+    /docs\/index\.md: its next step docs\/y\.md is no page of the site/,
+  );
+});
+
+test('every page of the documentation has a next step where it is read as a file', () => {
+  const pages = read_navigation(kRoot).pages.filter(({ source }) => source.startsWith('docs/'));
+  const kSteps = /\n## Where to go next\n(?!.*\n#)/s; // a last section of several steps
+  assert.ok(pages.length > 90, `${pages.length}`);
+  const without = pages.filter(({ step, text }) => step === null && !kSteps.test(text));
+  assert.deepEqual(
+    without.map(({ source }) => source),
+    [],
+    "these pages have no last line such as 'Next: [words](page.md).'",
+  );
+});
+
 test('of a session only what is typed can be copied, and nothing in it is markup', () => {
   const html = render_session('$ a --b <c> # why\nprinted <d>\n$ e \\\n>   f\nmore');
   assert.deepEqual(
@@ -122,6 +154,15 @@ test('of a session only what is typed can be copied, and nothing in it is markup
   assert.match(render_fence('toml my_task.toml', 'a = 1\n'), /<figcaption>my_task\.toml<\/figcaption><button/);
   assert.doesNotMatch(render_fence('toml problem=q1', 'a = 1\n'), /figcaption|button/);
   assert.doesNotMatch(render_fence('text', '<script>\n'), /<script>/);
+});
+
+test('long names may break at their joints, short ones stay whole', () => {
+  assert.equal(render_name('faults.Kill.AtEveryWriteOfARun'), '<code>faults.<wbr>Kill.<wbr>At<wbr>Every<wbr>Write<wbr>Of<wbr>ARun</code>');
+  assert.equal(
+    render_name('a/<b>/c_d=e-f/and/so/on/to'),
+    '<code>a/&lt;b&gt;/<wbr>c_<wbr>d=<wbr>e-<wbr>f/<wbr>and/<wbr>so/<wbr>on/<wbr>to</code>',
+  );
+  assert.equal(render_name('nlopt:sbplx'), '<code>nlopt:sbplx</code>');
 });
 
 test('names are found whole and by their pieces', () => {
@@ -150,6 +191,42 @@ test('names are found whole and by their pieces', () => {
   );
   assert.equal(make_excerpt('short text', ['text']), 'short text');
   assert.match(make_excerpt(`${'word '.repeat(50)}needle ${'word '.repeat(50)}`, ['needle']), /^\.\.\. .*needle.* \.\.\.$/);
+});
+
+test('a question in the words of a newcomer finds its page among the first three', () => {
+  const index = new MiniSearch(kSearch);
+  index.addAll(render_pages(read_navigation(kRoot)).flatMap(({ page, parts }) => make_documents(page, parts)));
+  const find_pages = (question) => [...new Set(find_parts(index, question).map(({ place }) => place.replace('.html', '')))];
+  assert.equal(find_pages('how do I tune my own robot')[0], 'tutorials/bring-your-robot');
+  const answers = {
+    'which optimizer is best': 'tour',
+    'how can I compare two optimizers': 'tutorials/compare',
+    'write my own optimizer in Python': 'tutorials/add-an-optimizer',
+    'how do I install it': 'install',
+    'continue a run after a crash': 'journal',
+    'run a study on a cluster with Slurm': 'clusters',
+    'export the gains to ROS 2': 'exporting',
+    'what does A12 mean': 'glossary',
+    'limit the torque of a joint': 'requirements',
+    'use armwright from Python': 'python',
+    'define a path for the tool': 'tasks',
+    'tune for a load that changes': 'robust',
+    'overshoot and settling time': 'requirements',
+    'check a design with another physics engine': 'verify',
+    'show the results in a browser': 'tutorials/compare',
+    'are my files damaged': 'doctor',
+    'why is my URDF rejected': 'robots',
+    'benchmark functions BBOB': 'functions',
+    'how many replicates do I need': 'tutorials/compare',
+    'PID gains of a controler': 'controllers', // a slip of the keyboard
+    'how fast is it on many cores': 'scaling',
+    'nlopt:sbplx': 'optimizers/nlopt-sbplx',
+  };
+  for (const [question, page] of Object.entries(answers)) {
+    const found = find_pages(question).slice(0, 3);
+    assert.ok(found.includes(page), `"${question}" finds ${found.join(', ')}, not ${page}`);
+  }
+  assert.deepEqual(find_pages('what is the'), [], 'words that say nothing');
 });
 
 test('every page of the documentation has its place, and every link of it leads somewhere', () => {

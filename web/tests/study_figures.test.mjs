@@ -111,6 +111,17 @@ test('several problems have a tab each, many a choice', () => {
   check_tabs(many);
 });
 
+test('the best design on another engine names the run that made it', () => {
+  const { table } = find(study.make_study_tabs(study.make_study_data({ optimizers: 4, replicates: 3, problems: 1 })), 'ranking');
+  const column = table.columns.findIndex((one) => one.label === 'best design there');
+  const cells = table.rows.map((row) => row[column]).filter((cell) => cell !== null);
+  assert.ok(cells.length > 0);
+  for (const cell of cells) {
+    assert.match(cell.command, /^armwright rerun study \d+\/\d+\/r1$/);
+    assert.match(cell.note, /replicate 1\.$/);
+  }
+});
+
 test('forty optimizers with fifteen replicates draw, the best twelve at first', () => {
   const tabs = study.make_study_tabs(study.make_study_data({ optimizers: 40, replicates: 15, problems: 1 }));
   check_tabs(tabs);
@@ -141,6 +152,18 @@ test('up to twelve optimizers are all drawn at first', () => {
   }
 });
 
+test('up to four optimizers have bands of quartiles', () => {
+  const data = study.make_study_data({ optimizers: 12, replicates: 6, problems: 1, infinite: 'none' });
+  const draw = (shown) => find(study.make_study_tabs(data, shown), 'convergence');
+  const count_bands = (figure) =>
+    figure.draw(study.kLight, {}).series.filter((one) => one.type === 'custom' && one.name !== undefined).length;
+  assert.equal(count_bands(draw(undefined)), 0);
+  assert.match(draw(undefined).caption, /for at most 4 optimizers; the table has the quartiles of all/);
+  assert.equal(count_bands(draw([0, 1, 2, 3])), 4);
+  assert.match(draw([0, 1, 2, 3]).caption, /The band shows the quartiles/);
+  assert.equal(count_bands(draw([0, 1, 2, 3, 4])), 0);
+});
+
 test('sixteen optimizers differ in colour, dash or symbol', () => {
   const tabs = study.make_study_tabs(study.make_study_data({ optimizers: 16, replicates: 6, problems: 1, infinite: 'none' }));
   for (const look of [study.kLight, study.kDark]) {
@@ -164,6 +187,42 @@ test('sixteen optimizers differ in colour, dash or symbol', () => {
     assert.equal(points.length, 16);
     assert.equal(new Set(points.map((point) => JSON.stringify([point.symbol, point.itemStyle]))).size, 16);
   }
+});
+
+test('the pairs of all problems are pooled, and each problem can be chosen', () => {
+  const make_problem = (targets, checkpoints, ecdfs) => ({
+    targets: Array.from({ length: targets }, (_, i) => i),
+    checkpoints,
+    results: ecdfs.map((ecdf) => ({ ecdf })),
+  });
+  const pooled = study.pool_ecdfs([
+    make_problem(10, [10, 100, 1000], [[0, 0.5, 1], [0, 0, 0.1]]), // prettier-ignore
+    make_problem(30, [20, 100], [[0.2, 0.4], [0, 0]]), // prettier-ignore
+  ]);
+  assert.deepEqual(pooled.checkpoints, [10, 20, 100, 1000]);
+  // 10 pairs per run on the first problem and 30 on the second one.
+  const expected = [
+    [0, 6 / 40, 17 / 40, 22 / 40],
+    [0, 0, 0, 1 / 40],
+  ];
+  pooled.shares.forEach((shares, o) => shares.forEach((share, i) => assert.ok(Math.abs(share - expected[o][i]) < 1e-15, `${o} ${i}`)));
+
+  const data = study.make_study_data({ optimizers: 3, replicates: 4, problems: 3 });
+  const figure = find(study.make_study_tabs(data), 'pooled-ecdf');
+  assert.deepEqual(
+    figure.choices[0].options.map((option) => option.label),
+    ['all 3 problems', 'Q1 problem 1', 'Q1 problem 2', 'Q1 problem 3'],
+  );
+  assert.match(figure.caption, /pairs of 3 problems that are reached/);
+  const single = figure.table({ problem: '1' }).rows.filter((row) => row[0] === data.optimizers[0].label);
+  assert.deepEqual(
+    single.map((row) => row[2]),
+    data.problems[1].results[0].ecdf,
+  );
+  data.problems[0].missing = 1;
+  assert.match(find(study.make_study_tabs(data), 'pooled-ecdf').caption, /of 2 problems .*Problems with missing runs are left out/);
+  data.problems[1].missing = 1;
+  assert.equal(find(study.make_study_tabs(data), 'pooled-ecdf'), undefined);
 });
 
 test('a profile opens where something is seen', () => {
@@ -546,6 +605,21 @@ test('the grid names the problems, or numbers them where they have no room', () 
   }
   assert.ok(few.includes('>Q1 problem<') && !few.includes('>Q1 problem 1<'), 'broken into two lines');
   assert.match(many.caption, /In a narrow window the problems have numbers/);
+  // Four names have two lines in a narrow window, between the legend and the cells.
+  const { option } = study.fit_width(find_grid(4).draw(study.kLight, {}), 290, 200);
+  const of_four = study.draw_svg(find_grid(4), study.kLight, {}, 290, 200);
+  const above = Array.from(of_four.matchAll(/ y="([\d.]+)"[^>]*>([^<]*)</g)).filter(
+    ([, y]) => y > 24 && y < find_grid(4).draw(study.kLight, {}).grid.top,
+  );
+  assert.equal(new Set(above.map(([, y]) => y)).size, 2, above.map(([, y, text]) => `${text} at ${y}`).join(', '));
+  assert.equal(
+    above
+      .map(([, , text]) => text)
+      .join('')
+      .replace(/ /g, ''),
+    'Q1problem1Q1problem2Q1problem3Q1problem4',
+  );
+  assert.ok(option.grid.top >= 4 + 14 + 5 + 2 * 13, `the cells begin at ${option.grid.top}`);
 });
 
 test('the verdict is folded away, whole', () => {
@@ -561,13 +635,14 @@ test('tables leave out columns that have no value', () => {
   const get_labels = (id) => find(study.make_study_tabs(data), id).table.columns.map((column) => column.label);
   const overall = ['optimizer', 'mean rank', 'from', 'to', 'median, Q1 problem 1', 'median, Q1 problem 2'];
   assert.deepEqual(get_labels('overall'), overall);
-  assert.ok(get_labels('cells-q1-problem-1').includes('time'));
+  assert.ok(get_labels('cells-q1-problem-1').includes('time taken'));
+  assert.ok(get_labels('cells-q1-problem-1').includes('CPU time'));
   assert.ok(get_labels('ranking-q1-problem-1').includes('checked on'));
   data.overall.rank_intervals = null;
   for (const problem of data.problems) {
     for (const result of problem.results) {
       result.final_check = null;
-      result.cells.forEach((cell) => Object.assign(cell, { seconds: null, failure: '', value: null }));
+      result.cells.forEach((cell) => Object.assign(cell, { wall_s: null, cpu_s: null, failure: '', value: null }));
     }
   }
   check_tabs(study.make_study_tabs(data));

@@ -29,6 +29,12 @@ void PageInput::add_to(CLI::App& command) {
 }
 
 std::optional<std::string> PageInput::make_data(Session& session) const {
+  for (const std::string& one : {source, other}) {
+    if (!other.empty() && regular_file_exists(one)) {
+      throw Error(ErrorKind::usage,
+                  one + ": is a file; a comparison is made from two folders of runs or studies");
+    }
+  }
   if (regular_file_exists(source)) {
     if (!cases.empty()) {
       throw Error(
@@ -43,7 +49,8 @@ std::optional<std::string> PageInput::make_data(Session& session) const {
   options.cases = cases;
   catch_signals(session.stop);
   ProgressBar bar(quiet, {"error", "m"});
-  return make_page_data(source, options, session.stop, bar);
+  return other.empty() ? make_page_data(source, options, session.stop, bar)
+                       : make_comparison_page(source, other, options, session.stop, bar);
 }
 
 }  // namespace armwright

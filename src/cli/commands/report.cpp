@@ -1,4 +1,4 @@
-// armwright report: writes one HTML page about a run, a study or a reproduction.
+// armwright report: writes one HTML page about a run, a study or a reproduction, or about two of them.
 
 #include <fmt/format.h>
 
@@ -20,6 +20,7 @@ namespace {
 constexpr const char* kReportExamples = R"(Examples:
   armwright report results/q1-complex-ga-seed1     # writes results/q1-complex-ga-seed1/report.html
   armwright report results/q1 --out q1.html        # a page about a study
+  armwright report results/q1-ga results/q1-cmaes  # compares two runs, or two studies: comparison.html
   armwright report results/q1-complex-ga-seed1 --case test/2:17
   armwright report results/q1 --json | jq .verdict
 
@@ -45,7 +46,9 @@ int run_report(const ReportOptions& options, Session& session) {
   std::filesystem::path file = options.out;
   if (!options.json) {
     get_page_assets();  // throws before anything is computed if this build has no page
-    if (file.empty()) {
+    if (file.empty() && !options.input.other.empty()) {
+      file = "comparison.html";
+    } else if (file.empty()) {
       if (regular_file_exists(options.input.source)) {
         throw Error(ErrorKind::usage,
                     fmt::format("{}: name the new page with --out", options.input.source));
@@ -78,12 +81,16 @@ void add_report(CLI::App& app, Session& session) {
       add_command(app, session, "report", "Write a page about a run or a study: figures and motion",
                   kReportExamples);
   options->input.add_to(*command);
-  auto* out = command
-                  ->add_option("--out", options->out,
-                               "The page's file (default: FOLDER/report.html); only a page may be "
-                               "replaced")
-                  ->type_name("FILE")
-                  ->group("Output");
+  command->add_option("OTHER", options->input.other,
+                      "A second folder: the page compares both, which must be two runs or two "
+                      "studies");
+  auto* out =
+      command
+          ->add_option("--out", options->out,
+                       "The page's file (default: FOLDER/report.html, or comparison.html in "
+                       "the current folder for two folders); only a page may be replaced")
+          ->type_name("FILE")
+          ->group("Output");
   command->add_flag("--json", options->json, "Print the page's data as JSON, and write no page")
       ->group("Output")
       ->excludes(out);

@@ -42,18 +42,6 @@ struct StatusOptions {
   bool json = false;
 };
 
-std::string describe_holder(const CellStatus& status) {
-  if (!status.writer.empty()) {
-    return status.writer;
-  }
-  if (!status.attempt || !status.attempt->record) {
-    return "?";
-  }
-  const AttemptRecord& record = *status.attempt->record;
-  return fmt::format("process {} on {}{}", record.pid, record.host,
-                     record.job.empty() ? "" : " (" + record.job + ")");
-}
-
 std::string describe_cell_status(const StudyPlan& plan, const CellStatus& status) {
   const std::string name = make_cell_name(plan, status.cell);
   switch (status.state) {

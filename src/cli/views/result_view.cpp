@@ -29,6 +29,7 @@ constexpr RunFile kRunFiles[] = {
     {"results.sqlite", "every evaluation, as SQL tables"},
     {"journal", "every evaluation; resuming reads it"},
     {"optimizer.log", "the output of the optimizer"},
+    {"times.json", "how long the run took"},
     {"manifest.json", "the configuration, the hashes of the inputs and the build"},
 };
 

@@ -269,8 +269,10 @@ std::string make_datasheet(const FinishedArm& arm) {
   const std::string title = fmt::format("{}: tuned controllers", sanitize(arm.config().robot.name));
   std::string html = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
-      "'unsafe-inline'\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n"
+      "'unsafe-inline'\">\n<title>{0}</title>\n<style>{1}</style>\n</"
+      "head>\n<body>\n<main>\n<h1>{0}</h1>\n"
       "<p class=\"lead\">{2}. All numbers are simulated, none is measured.</p>\n",
       escape_html(title), kDatasheetStyle, escape_html(sanitize(arm.run.problem->title)));
   html += "<div class=\"columns\">\n" + make_section("Robot", make_robot_facts(arm)) +
@@ -286,7 +288,7 @@ std::string make_datasheet(const FinishedArm& arm) {
     html += make_section("Errors", figures);
   }
   html += make_section("Origin", make_origin(arm));
-  return html + "</body>\n</html>\n";
+  return html + "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace armwright

@@ -59,12 +59,12 @@ body { margin: 0 auto; width: 186mm; font: 8.2pt/1.3 "DejaVu Sans", Arial, sans-
 h1 { font-size: 14pt; margin: 0; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 h2 { font-size: 9pt; margin: 2.2mm 0 .6mm; border-bottom: .3mm solid #111; }
 p { margin: .5mm 0; }
-.lead, .clamped { display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 2; overflow: hidden; }
+.lead, .clamped, dd { display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 2; overflow: hidden; }
 .columns { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0 5mm; }
 .figures { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 0 5mm; }
 dl { display: grid; grid-template-columns: max-content minmax(0, 1fr); gap: 0 2mm; margin: 0; }
 dt { color: #444; }
-dd { margin: 0; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
+dd { margin: 0; overflow-wrap: anywhere; }
 table { width: 100%; border-collapse: collapse; table-layout: fixed; font-size: 7.6pt; }
 th, td { padding: .25mm .8mm; border-bottom: .1mm solid #bbb; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
 th { font-weight: normal; color: #444; text-align: left; }
@@ -80,6 +80,16 @@ svg { width: 100%; display: block; font-size: 9px; }
 svg .grid { stroke: #ddd; stroke-width: .5; }
 svg polyline { fill: none; stroke: #14508c; stroke-width: 1.2; }
 .small { font-size: 6.4pt; overflow-wrap: anywhere; }
+@media screen {
+body { width: min(186mm, 100% - 24px); }
+}
+@media screen and (width < 700px) {
+.columns, .figures { grid-template-columns: minmax(0, 1fr); }
+h1 { white-space: normal; overflow-wrap: anywhere; }
+tr { display: grid; grid-template-columns: repeat(auto-fill, minmax(84px, 1fr)); }
+th, td { white-space: normal; overflow-wrap: anywhere; }
+tr > :first-child, tr:first-child > :first-child { grid-column: 1 / -1; width: auto; font-weight: bold; }
+}
 )";
 
 }  // namespace armwright

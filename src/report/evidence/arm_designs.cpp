@@ -48,6 +48,11 @@ void add_published(const RecordedRun& run, const DesignFile& file, ShownDesign& 
   }
 }
 
+// Returns the name of the start or of the published design on all pages.
+std::string name_design(const std::string& id) {
+  return id == "base" ? kBaseControllers : id;
+}
+
 // If the file is missing or made for another arm, returns nothing and adds a note.
 std::optional<ShownDesign> load_shown(const RecordedRun& run, const std::string& name,
                                       const std::string& id, std::vector<std::string>& notes) {
@@ -56,7 +61,8 @@ std::optional<ShownDesign> load_shown(const RecordedRun& run, const std::string&
     design.argument = find_design_argument(run, name);
     const DesignFile file = load_design(design.argument);
     run.tracking()->check_design(file.design);
-    design.named = {id, file.source.empty() ? file.name : file.source, file.design};
+    design.named = {id, name_design(id), file.design};
+    design.source = file.source;
     add_published(run, file, design);
     return design;
   } catch (const Error& error) {
@@ -82,10 +88,9 @@ std::vector<ShownDesign> list_designs(const RecordedRun& run, std::vector<std::s
   const auto start = variables.at("start").get<std::string>();
   if (start == kProposedStart) {
     ShownDesign& base = designs.emplace_back();
-    base.named = {"base", "proposed controllers", tracking.config().start};
+    base.named = {"base", kProposedControllers, tracking.config().start};
     base.argument = kStartDesign;
   } else if (auto base = load_shown(run, start, "base", notes)) {
-    base->named.name = "base controllers";
     designs.push_back(std::move(*base));
   }
   const std::string& published = run.problem->published.design;

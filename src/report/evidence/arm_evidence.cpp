@@ -99,6 +99,7 @@ json make_result_rows(const std::vector<ShownDesign>& designs) {
     }
     const ErrorSummary summary = summarize_cases(design.results);
     rows.push_back({{"design", design.named.id},
+                    {"source", design.source},
                     {"mean_m", finite_or_null(summary.mean)},
                     {"median_m", finite_or_null(summary.median)},
                     {"p95_m", finite_or_null(summary.percentile_95)},

@@ -17,6 +17,7 @@ namespace armwright {
 struct ShownDesign {
   NamedDesign named;
   std::string argument;  // its name or file for `armwright evaluate`; empty: it has neither
+  std::string source;    // "thesis, Table A.5"; empty if its file names none
   std::optional<double> published_mean_m;
   std::optional<double> published_torque_n_m;
   std::string where;                    // the source of the published numbers
@@ -56,9 +57,10 @@ nlohmann::json make_speed_sweep(const RecordedRun& run, const std::vector<ShownD
 // Returns the number of cases that make_speed_sweep() simulates.
 std::uint64_t count_sweep_cases(const RecordedRun& run, const std::vector<ShownDesign>& designs);
 
-// Chooses the cases to replay, each at most once: a training case; from the test set the first, and
-// by the winner's error the median, the 95th percentile and the worst; the winner's first failures;
-// and `case_ids`, which the user asked for. Throws Error{usage} if one of those is not a case.
+// Chooses the cases to replay, each at most once: from the test set, by the winner's error, the
+// median, the 95th percentile and the worst; the winner's first failures; the first of the test
+// set; a training case; and `case_ids`, which the user asked for. The page opens the first one.
+// Throws Error{usage} if one of `case_ids` is not a case.
 std::vector<ReplayRequest> choose_replays(const RecordedRun& run,
                                           const std::vector<ShownDesign>& designs,
                                           const std::vector<std::string>& case_ids);

@@ -45,7 +45,7 @@ void add_by_rank(const RecordedRun& run, const std::vector<double>& errors, Repl
   const std::string& set = run.problem->sets.test;
   const std::vector<std::size_t> order = rank_by_error(errors);
   const std::size_t count = errors.size();
-  replays.add(set, order[(count - 1) / 2], fmt::format("the median of {}", count));
+  replays.add(set, order[(count - 1) / 2], fmt::format("the median of {} by error", count));
   replays.add(set, order[(95 * count + 99) / 100 - 1], "the 95th percentile");
   replays.add(set, order[count - 1], fmt::format("the worst of {}", count));
   constexpr int kMostFailures = 3;
@@ -71,12 +71,13 @@ std::vector<ReplayRequest> choose_replays(const RecordedRun& run,
                                           const std::vector<ShownDesign>& designs,
                                           const std::vector<std::string>& case_ids) {
   ReplayList replays(*run.tracking());
-  add_training_case(run, replays);
-  replays.add(run.problem->sets.test, 0, "the first of the test set");
+  // The page opens the first case, so the median test case comes first.
   const bool has_winner = run.result && run.result->winner && !designs.empty();
   if (has_winner && !run.result->test.case_errors.empty()) {
     add_by_rank(run, run.result->test.case_errors, replays);
   }
+  replays.add(run.problem->sets.test, 0, "the first of the test set");
+  add_training_case(run, replays);
   for (const std::string& text : case_ids) {
     replays.add(text, kAskedFor);
   }

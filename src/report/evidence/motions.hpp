@@ -13,6 +13,11 @@
 
 namespace armwright {
 
+// The names, on all pages, of the design from which an optimization starts: one that somebody chose,
+// or one that armwright proposed for the arm.
+inline constexpr const char* kBaseControllers = "base controllers";
+inline constexpr const char* kProposedControllers = "proposed controllers";
+
 // A design that a page shows.
 struct NamedDesign {
   std::string id;    // "winner"

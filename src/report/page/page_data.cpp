@@ -11,25 +11,42 @@
 
 namespace armwright {
 
-std::optional<std::string> make_page_data(const std::filesystem::path& folder,
-                                          const PageOptions& options, StopSignal& stop,
-                                          RunObserver& observer) {
+const char* to_string(PageKind kind) {
+  constexpr const char* kNames[] = {"a run", "a study", "a reproduction"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+PageKind find_page_kind(const std::filesystem::path& folder) {
   if (!path_exists(folder)) {
     throw Error(ErrorKind::usage, fmt::format("{}: there is no such folder", folder.string()));
   }
   if (is_study_folder(folder)) {
-    return make_study_page(folder, options, stop, observer);
+    return PageKind::study;
   }
   if (is_reproduction_folder(folder)) {
-    return make_reproduction_page(folder, options, stop, observer);
+    return PageKind::reproduction;
   }
   if (path_exists(folder / "manifest.json")) {
-    return make_run_page(folder, options, stop, observer);
+    return PageKind::run;
   }
   throw Error(ErrorKind::usage,
               fmt::format("{}: is the folder of neither a run, a study nor a reproduction; name "
                           "one that optimize, compare or reproduce --out has made",
                           folder.string()));
+}
+
+std::optional<std::string> make_page_data(const std::filesystem::path& folder,
+                                          const PageOptions& options, StopSignal& stop,
+                                          RunObserver& observer) {
+  switch (find_page_kind(folder)) {
+    case PageKind::run:
+      return make_run_page(folder, options, stop, observer);
+    case PageKind::study:
+      return make_study_page(folder, options, stop, observer);
+    case PageKind::reproduction:
+      break;
+  }
+  return make_reproduction_page(folder, options, stop, observer);
 }
 
 std::string get_page_title(std::string_view data) {

@@ -10,6 +10,7 @@
 #include "report/evidence/distance_response.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/signals.hpp"
+#include "report/page/progress_meter.hpp"
 #include "report/page/reproduction_replays.hpp"
 #include "study/run/design_evaluation.hpp"
 
@@ -78,6 +79,8 @@ class ReproductionPage {
             {"command", make_own_command()},
             {"finished", there == planned},
             {"progress", std::move(progress)},
+            {"watched", options.meter == nullptr ? json(nullptr)
+                                                 : options.meter->observe_results(there, planned)},
             {"notes", notes_},
             {"facts", make_facts()},
             {"robots", std::move(replays["robots"])},
@@ -156,6 +159,13 @@ class ReproductionPage {
                          : "published designs and figures, on our own test cases";
   }
 
+  // Returns why our numbers of a part may differ from the published ones; empty if no reason is
+  // known.
+  std::string get_reason(const ReproductionPart& part) const {
+    const auto found = config_.reasons.find(part.label);
+    return found == config_.reasons.end() ? "" : found->second;
+  }
+
   json make_facts() const {
     json facts = json::array();
     std::vector<std::string> engines;
@@ -193,21 +203,24 @@ class ReproductionPage {
         continue;
       }
       const ErrorSummary summary = result->calc_summary();
-      rows.push_back({{"label", part.label},
-                      {"design", part.design},
-                      {"problem", part.problem},
-                      {"overrides", part.overrides},
-                      {"where", part.where},
-                      {"published_error_m", finite_or_null(part.published_error_m)},
-                      {"published_torque_n_m", finite_or_null(part.published_torque_n_m)},
-                      {"cases", summary.cases},
-                      {"mean_m", finite_or_null(summary.mean)},
-                      {"median_m", finite_or_null(summary.median)},
-                      {"p95_m", finite_or_null(summary.percentile_95)},
-                      {"worst_m", finite_or_null(summary.worst)},
-                      {"failures", summary.failures},
-                      {"torque_n_m", finite_or_null(result->total_torque_n_m)},
-                      {"command", make_command(part)}});
+      rows.push_back(
+          {{"label", part.label},
+           {"design", part.design},
+           {"problem", part.problem},
+           {"overrides", part.overrides},
+           {"where", part.where},
+           {"published_error_m", finite_or_null(part.published_error_m)},
+           {"published_torque_n_m", finite_or_null(part.published_torque_n_m)},
+           {"cases", summary.cases},
+           {"mean_m", finite_or_null(summary.mean)},
+           {"median_m", finite_or_null(summary.median)},
+           {"p95_m", finite_or_null(summary.percentile_95)},
+           {"worst_m", finite_or_null(summary.worst)},
+           {"standard_error_m", finite_or_null(calc_standard_error(result->case_errors))},
+           {"failures", summary.failures},
+           {"torque_n_m", finite_or_null(result->total_torque_n_m)},
+           {"reason", get_reason(part)},
+           {"command", make_command(part)}});
     }
     return rows;
   }
@@ -230,6 +243,7 @@ class ReproductionPage {
                       {"mean_m", finite_or_null(summary.mean)},
                       {"torque_n_m", finite_or_null(result->total_torque_n_m)},
                       {"published_torque_n_m", finite_or_null(part.published_torque_n_m)},
+                      {"reason", get_reason(part)},
                       {"folder", get_run_folder(part.run)},
                       {"command", part.overrides.empty() ? make_optimize_command(part.run)
                                                          : make_command(part)}});

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
@@ -21,13 +22,15 @@ LoadedProblem load_problem_of(const PartResult& result, const ReproductionRecord
   return load_problem(result.part.problem, overrides);
 }
 
-// Returns the design with the name "A.5 (Winner of Q1)" for "table-a5"; the parentheses have the
-// title up to its first colon.
+// Returns the design with the name "A.5" for "table-a5". A design without published results, such as
+// the base controllers, has the beginning of its title as its name, up to the first colon.
 NamedDesign make_named_design(const std::string& name) {
   const DesignFile file = load_design(name);
-  return {name,
-          fmt::format("{} ({})", get_table_name(name), file.title.substr(0, file.title.find(':'))),
-          file.design};
+  std::string title = file.title.substr(0, file.title.find(':'));
+  if (!title.empty()) {
+    title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
+  }
+  return {name, file.published.empty() ? title : get_table_name(name), file.design};
 }
 
 std::vector<ReplayRequest> choose_cases(const TrackingProblem& problem, const ReplayConfig& replay,

@@ -8,7 +8,9 @@
 #include "problems/tracking/requirement_grade.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/page/run_parts.hpp"
+#include "study/run/json_values.hpp"
 #include "study/run/run.hpp"
+#include "study/run/run_times.hpp"
 
 namespace armwright {
 namespace {
@@ -151,11 +153,18 @@ json make_run_facts(const RecordedRun& run) {
 }
 
 json make_headline(const RecordedRun& run, const History& history) {
+  const auto times = load_times(run.folder);
   const std::int64_t cases = history.parts.empty() ? 0 : history.parts.back().cases;
   json headline = {{"started", run.started}, {"evaluations", run.journal.training.size()},
                    {"cases", cases},         {"value", nullptr},
                    {"quantity", nullptr},    {"failures", nullptr},
-                   {"test_cases", nullptr},  {"total_torque_n_m", nullptr}};
+                   {"test_cases", nullptr},  {"total_torque_n_m", nullptr},
+                   {"times", nullptr}};
+  if (times) {
+    headline["times"] = {{"wall_s", times->wall_s},
+                         {"cpu_s", optional_to_json(times->cpu_s)},
+                         {"lives", times->lives}};
+  }
   if (!run.result || !run.result->winner) {
     return headline;
   }

@@ -12,6 +12,7 @@
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/robot_scene.hpp"
 #include "report/page/page_data.hpp"
+#include "report/page/progress_meter.hpp"
 #include "report/page/run_parts.hpp"
 #include "study/run/run.hpp"
 
@@ -171,27 +172,29 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
                 {"total", run.budget},
                 {"unit", "cases"}};
   }
-  json page = {{"format", 1},
-               {"kind", "run"},
-               {"title", fmt::format("{} on {}", shorten_optimizer(optimizer), run.problem_name)},
-               {"subtitle", run.problem ? run.problem->title : ""},
-               {"program", make_program()},
-               {"folder", run.folder.string()},
-               {"command", quote_command(command)},
-               {"finished", run.result.has_value()},
-               {"progress", std::move(progress)},
-               {"facts", make_run_facts(run)},
-               {"headline", make_headline(run, history)},
-               {"robots", json::array()},
-               {"replays", json::array()},
-               {"problem", run.problem_name},
-               {"optimizer", optimizer},
-               {"quantity", make_quantity(quantity)},
-               {"logarithmic", quantity.name.starts_with("ln(")},
-               {"variables", make_variables(run, history)},
-               {"front", make_front(run)},
-               {"requirements", make_requirements(run)},
-               {"arm", nullptr}};
+  json page = {
+      {"format", 1},
+      {"kind", "run"},
+      {"title", fmt::format("{} on {}", shorten_optimizer(optimizer), run.problem_name)},
+      {"subtitle", run.problem ? run.problem->title : ""},
+      {"program", make_program()},
+      {"folder", run.folder.string()},
+      {"command", quote_command(command)},
+      {"finished", run.result.has_value()},
+      {"progress", std::move(progress)},
+      {"watched", options.meter == nullptr ? json(nullptr) : options.meter->observe_run(run)},
+      {"facts", make_run_facts(run)},
+      {"headline", make_headline(run, history)},
+      {"robots", json::array()},
+      {"replays", json::array()},
+      {"problem", run.problem_name},
+      {"optimizer", optimizer},
+      {"quantity", make_quantity(quantity)},
+      {"logarithmic", quantity.name.starts_with("ln(")},
+      {"variables", make_variables(run, history)},
+      {"front", make_front(run)},
+      {"requirements", make_requirements(run)},
+      {"arm", nullptr}};
   if (run.tracking() != nullptr) {
     add_arm(run, options, used, page, notes);
   } else {

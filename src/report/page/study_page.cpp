@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/page/page_data.hpp"
+#include "report/page/progress_meter.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/analysis/final_check.hpp"
 #include "study/analysis/verdict.hpp"
@@ -87,6 +88,9 @@ std::optional<std::string> make_study_page(const std::filesystem::path& folder,
        finished
            ? json(nullptr)
            : json{{"done", total - result.missing.size()}, {"total", total}, {"unit", "cells"}}},
+      {"watched", options.meter == nullptr
+                      ? json(nullptr)
+                      : options.meter->observe_study(plan, result.cells, folder)},
       {"facts", make_study_facts(plan)},
       {"robots", json::array()},
       {"replays", json::array()},

@@ -7,6 +7,7 @@
 #include "report/evidence/page_json.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/analysis/verdict.hpp"
+#include "study/run/run_times.hpp"
 #include "study/statistics/ranking.hpp"
 #include "study/statistics/summary.hpp"
 
@@ -38,11 +39,13 @@ json make_cell(const StudyPlan& plan, const Cell& cell, const CellOutcome& outco
                const std::filesystem::path& folder) {
   const std::vector<std::string> words = {"armwright", "rerun", folder.string(),
                                           name_cell(plan, cell)};
+  const auto times = load_times(folder / make_cell_path(plan, cell));
   return {{"replicate", outcome.replicate},
           {"value", finite_or_null(value)},
           {"cases", outcome.cases},
           {"evaluations", outcome.evaluations},
-          {"seconds", nullptr},  // runs do not record their duration
+          {"wall_s", times ? json(times->wall_s) : json(nullptr)},
+          {"cpu_s", times && times->cpu_s ? json(*times->cpu_s) : json(nullptr)},
           {"failure", sanitize(outcome.failure)},
           {"failures", outcome.errors.failures},
           {"x", rounded(outcome.x)},

@@ -24,6 +24,12 @@ constexpr std::size_t kMostDesigns = 6;
 constexpr std::size_t kMostGroups = 3;                    // of divide_by_motion()
 constexpr std::size_t kMostBytes = std::size_t{3} << 20;  // all replays together
 
+// Returns the name of the design from which the problem's optimizations start.
+std::string name_start(const LoadedProblem& problem) {
+  const json variables = json::parse(problem.resolved_json).at("variables");
+  return variables.at("start") == kProposedStart ? kProposedControllers : kBaseControllers;
+}
+
 struct BestDesign {
   const CellOutcome* cell = nullptr;
   NamedDesign named;
@@ -144,7 +150,7 @@ json make_study_replays(const StudyPlan& plan, const StudyResult& result,
     for (const BestDesign& one : best) {
       designs.push_back(one.named);
     }
-    designs.push_back({"start", "where the problem starts", tracking.config().start});
+    designs.push_back({"start", name_start(problem.loaded), tracking.config().start});
     auto groups = divide_by_motion(tracking, designs);
     bool is_whole = groups.size() <= kMostGroups;
     if (!is_whole) {  // the groups of the two best designs and of the start stay

@@ -25,6 +25,8 @@ const Setting<std::string> kReproTrainingCase("training_case", kNoDefault, "");
 const Setting<std::string> kReproRemark("remark", "", "");
 const Setting<std::string> kReproWhere("where", "", "");
 const Setting<std::vector<std::string>> kReproSet("set", kNoDefault, "");
+const Setting<std::vector<std::string>> kReproParts("parts", kNoDefault, "");
+const Setting<std::string> kReproReason("reason", kNoDefault, "");
 const Setting<std::vector<std::string>> kReproBeside("beside", kNoDefault, "");
 const Setting<std::int64_t> kReproSeed("seed", {.lower = 0, .upper = 1e9}, kNoDefault, "");
 const Setting<double> kReproTorque("total_torque_n_m", {.lower = 0, .lower_open = true}, kNoDefault,
@@ -34,6 +36,7 @@ const SettingTable kReproRunsTable{.key = "runs", .is_array = true};
 const SettingTable kReproUnpublishedTable{.key = "unpublished", .is_array = true};
 const SettingTable kReproReevaluationTable{.key = "reevaluation", .is_array = true};
 const SettingTable kReproFigureTable{.key = "figure", .is_array = true};
+const SettingTable kReproDifferenceTable{.key = "difference", .is_array = true};
 const SettingTable kReproReplayTable{.key = "replay", .is_array = true};
 const SettingTable kReproMomentaryTable{.key = "momentary", .is_array = true};
 
@@ -100,6 +103,11 @@ ReproductionConfig load_reproduction_config(const std::string& name_or_path) {
   }
   for (const ConfigTable& figure : table.get_tables_or_empty(kReproFigureTable)) {
     config.figures.push_back(read_figure(figure));
+  }
+  for (const ConfigTable& difference : table.get_tables_or_empty(kReproDifferenceTable)) {
+    for (const std::string& label : difference.get(kReproParts)) {
+      config.reasons[label] = difference.get(kReproReason);
+    }
   }
   for (const ConfigTable& replay : table.get_tables_or_empty(kReproReplayTable)) {
     config.replays.push_back({replay.get(kReproId), replay.get(kReproTitle), replay.get(kReproOf),

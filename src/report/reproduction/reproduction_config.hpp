@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -58,6 +59,7 @@ struct ReproductionConfig {
   std::vector<ReproductionPart> reevaluations;  // winners of runs under other conditions
   std::string sweep;                            // a problem with [sweep]
   std::vector<ResponseFigureConfig> figures;
+  std::map<std::string, std::string> reasons;  // why results differ; by the part's label
   std::vector<ReplayConfig> replays;
   // Errors over time in the first case of a replay: name, and id of the replay.
   std::vector<std::pair<std::string, std::string>> momentary;

@@ -61,6 +61,7 @@ class Planner {
       if (plan_.request.tables.empty()) {
         add_unpublished(config);
         add_runs(config);
+        check_reasons(config);
       }
       add_sweep(config.sweep, designs);
     }
@@ -127,6 +128,18 @@ class Planner {
           part.where = again.where;
           add(part, {});
         }
+      }
+    }
+  }
+
+  // Throws Error{usage} if a reason belongs to no result.
+  void check_reasons(const ReproductionConfig& config) const {
+    const std::vector<std::string> valid(labels_.begin(), labels_.end());
+    for (const auto& [label, reason] : config.reasons) {
+      if (!labels_.contains(label)) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: difference.parts: {}", sanitize(plan_.request.config),
+                                describe_unknown("result", label, valid)));
       }
     }
   }

@@ -12,6 +12,7 @@
 #include "study/compare/choices.hpp"
 #include "study/compare/incumbents.hpp"
 #include "study/run/run_folder.hpp"
+#include "study/run/run_times.hpp"
 #include "study/statistics/values.hpp"
 
 namespace armwright {
@@ -174,6 +175,7 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const CellRequest& where, StopSignal& stop,
                                     RunObserver& observer) {
+  const RunClock clock;
   RunRequest request;
   request.plan = make_run_plan(plan, cell);
   request.folder = where.folder;
@@ -183,7 +185,10 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
   request.command_line = where.command_line;
   request.derived = DerivedFiles::winner;
   const auto result = execute_run(request, stop, observer);
+  const Folder folder = Folder::make(where.folder, where.root);
+  const bool simulates = where.executor == nullptr;
   if (!result) {
+    clock.add_to(folder, simulates);
     return std::nullopt;
   }
   CellOutcome outcome;
@@ -204,10 +209,11 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                plan.constraint_tolerance, outcome);
   }
   if (!test_progress(plan, cell, request.plan, *result, where, stop, outcome)) {
+    clock.add_to(folder, simulates);
     return std::nullopt;
   }
+  clock.add_to(folder, simulates);
   const std::string name = "cell.json";
-  const Folder folder = Folder::make(where.folder, where.root);
   FolderChecksums(folder).drop({&name, 1});
   write_file_atomically(folder, name, to_json(outcome));
   cover_run(folder, outcome.failure.empty());

@@ -21,6 +21,7 @@
 #include "study/matrix/attempt.hpp"
 #include "study/matrix/cell_attempt.hpp"
 #include "study/run/run_folder.hpp"
+#include "study/run/run_times.hpp"
 
 namespace armwright {
 namespace {
@@ -108,6 +109,7 @@ void copy_furthest_state(const StudyPlan& plan, const Cell& cell,
       checksums.cover(name, manifest);
       checksums.save();
       write_file_atomically(folder, name, manifest);
+      copy_file_into(folder, earlier.folder / kTimesFile);
       return;
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::bad_data) {

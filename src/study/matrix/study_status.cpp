@@ -1,5 +1,7 @@
 #include "study/matrix/study_status.hpp"
 
+#include <fmt/format.h>
+
 #include "base/error.hpp"
 #include "study/compare/cell.hpp"
 #include "study/run/run_lock.hpp"
@@ -61,6 +63,18 @@ const char* to_string(CellState state) {
   constexpr const char* kNames[] = {"done", "failed", "broken", "running", "silent", "left"};
   static_assert(std::size(kNames) == kCellStates);
   return kNames[static_cast<std::size_t>(state)];
+}
+
+std::string describe_holder(const CellStatus& status) {
+  if (!status.writer.empty()) {
+    return status.writer;
+  }
+  if (!status.attempt || !status.attempt->record) {
+    return "?";
+  }
+  const AttemptRecord& record = *status.attempt->record;
+  return fmt::format("process {} on {}{}", record.pid, record.host,
+                     record.job.empty() ? "" : " (" + record.job + ")");
 }
 
 StudyStatus read_study_status(const StudyPlan& plan, const std::filesystem::path& study) {

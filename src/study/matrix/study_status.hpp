@@ -33,6 +33,9 @@ struct CellStatus {
   std::string error;                    // only for cells that are broken or failed
 };
 
+// Returns the process that runs the cell, as "process 12 on HOST (slurm 12_3)"; "?" if it is unknown.
+std::string describe_holder(const CellStatus& status);
+
 struct StudyStatus {
   using Counts = std::array<std::size_t, kCellStates>;
   struct Row {

@@ -200,7 +200,8 @@ bool are_derived_files_there(const RunFolder& folder, DerivedFiles derived) {
 }
 
 void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,
-                         JournalContent journal, DerivedFiles derived) {
+                         JournalContent journal, DerivedFiles derived,
+                         const std::function<void()>& before_last) {
   const Folder& files = folder.folder();
   const bool all = derived == DerivedFiles::all;
   std::vector<std::string> changing = derived_file_names();
@@ -225,6 +226,7 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
       write_file_atomically(files, "winner-trajectory.csv", make_trajectory_csv(tracking, motion));
     }
   }
+  before_last();
   write_file_atomically(files, "result.json", to_json(result));
   cover_run(files, result.failure.empty());
 }

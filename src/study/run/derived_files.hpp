@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "study/journal/journal.hpp"
@@ -25,10 +26,11 @@ std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingRe
 // it, and their checksums if the run has begun with them. Throws Error{bad_data} if result.json is damaged.
 bool are_derived_files_there(const RunFolder& folder, DerivedFiles derived);
 
-// Writes the derived files, and result.json last: where it exists, all others exist. Then covers
-// all files of the run with checksums. Throws Error{io}.
+// Writes the derived files, and result.json last: where it exists, all others exist. Calls
+// `before_last` right before it. Then covers all files of the run with checksums. Throws Error{io}.
 void write_derived_files(const RunFolder& folder, const RunPlan& plan, const RunResult& result,
-                         JournalContent journal, DerivedFiles derived);
+                         JournalContent journal, DerivedFiles derived,
+                         const std::function<void()>& before_last);
 
 // Writes a journal as an SQLite file with these tables:
 //   variable(position, name, unit, lower, upper, start)

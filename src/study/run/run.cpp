@@ -11,6 +11,7 @@
 #include "study/journal/journal_format.hpp"
 #include "study/run/run_evaluator.hpp"
 #include "study/run/run_folder.hpp"
+#include "study/run/run_times.hpp"
 #include "study/run/winner_selection.hpp"
 
 namespace armwright {
@@ -122,6 +123,7 @@ void warn_of_fewer_threads(std::size_t granted, std::size_t wanted, RunObserver&
 
 std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop,
                                      RunObserver& observer) {
+  const RunClock clock;
   RunPlan plan = request.plan;
   check_plan(plan);
   if (request.derived == DerivedFiles::all) {
@@ -144,6 +146,11 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   }
 
   folder.check_writable();
+  const auto add_time = [&] {
+    if (request.derived == DerivedFiles::all) {  // a comparison measures its cells itself
+      clock.add_to(folder.folder(), request.executor == nullptr);
+    }
+  };
   JournalContent recorded;
   Journal journal(folder.folder(), folder.journal().filename().string(), recorded);
   describe_start(folder, recorded, observer);
@@ -165,6 +172,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   }
   if (stop.requested()) {
     journal.close();
+    add_time();
     return std::nullopt;
   }
   if (!result.failure.empty()) {
@@ -181,6 +189,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   if (!select_winner(plan, evaluator.select_candidates(), recorded, executor, stop, journal,
                      observer, result)) {
     journal.close();
+    add_time();
     return std::nullopt;
   }
   // A failed run gets no end record, so that it goes on from the failure when it is started again.
@@ -188,7 +197,8 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     journal.append(EndRecord{result.end_reason, result.counts.evaluations});
   }
   journal.close();
-  write_derived_files(folder, plan, result, read_journal(folder.journal()), request.derived);
+  write_derived_files(folder, plan, result, read_journal(folder.journal()), request.derived,
+                      add_time);
   return result;
 }
 

@@ -64,11 +64,11 @@ TEST_F(ReproductionPageTest, HasAllKeysAndWhatWasComputed) {
   reproduce(small_.request());
   const std::string text = make_page();
   const json page = json::parse(text);
-  EXPECT_EQ(
-      get_keys(page),
-      (std::set<std::string>{"format", "kind", "title", "subtitle", "program", "folder", "command",
-                             "finished", "progress", "notes", "facts", "robots", "replays", "rows",
-                             "runs", "responses", "signals", "sweep", "momentary"}));
+  EXPECT_EQ(get_keys(page),
+            (std::set<std::string>{"format", "kind",      "title",    "subtitle", "program",
+                                   "folder", "command",   "finished", "progress", "watched",
+                                   "notes",  "facts",     "robots",   "replays",  "rows",
+                                   "runs",   "responses", "signals",  "sweep",    "momentary"}));
   EXPECT_EQ(page["kind"], "reproduction");
   EXPECT_EQ(page["finished"], true);
   EXPECT_TRUE(page["progress"].is_null());
@@ -80,6 +80,12 @@ TEST_F(ReproductionPageTest, HasAllKeysAndWhatWasComputed) {
   EXPECT_EQ(row["published_error_m"], *record.results.at("A.5").part.published_error_m);
   EXPECT_EQ(row["mean_m"], *record.results.at("A.5").calc_summary().mean);
   EXPECT_EQ(row["command"], "armwright evaluate table-a5 --problem q1-complex --cases 2");
+  EXPECT_EQ(row["standard_error_m"], calc_standard_error(record.results.at("A.5").case_errors));
+  EXPECT_EQ(row["reason"], "");
+  for (const json& one : page["rows"]) {
+    EXPECT_EQ(one["reason"], one["label"] == "A.9" ? "The reason." : "") << one["label"];
+  }
+  EXPECT_EQ(page["runs"][0]["reason"], "The reason.");
   EXPECT_EQ(page["rows"].back()["label"], "A.11 (Q3)");
   ASSERT_EQ(page["runs"].size(), 2);
   EXPECT_EQ(page["runs"][0]["name"], "T1");

@@ -124,14 +124,14 @@ TEST_F(RunPage, HasWhatTheContractSaysForAnArm) {
   EXPECT_EQ(page["variables"].size(), 20u);
   EXPECT_EQ(page["arm"]["parameters"].size(), 20u);
   EXPECT_EQ(page["training"]["incumbents"]["test"].size(), 3u);
-  EXPECT_EQ(replay["cases"][0]["id"], "train/1:1");
-  EXPECT_EQ(replay["cases"][1]["id"], "test/2:0");
   EXPECT_EQ(replay["cases"].back()["id"], "test/2:17");
   std::set<std::string> ids;
   for (const json& one : replay["cases"]) {
     EXPECT_TRUE(ids.insert(one["id"]).second) << one["id"];
     EXPECT_EQ(one["motions"].size(), 3u);
   }
+  EXPECT_TRUE(ids.contains("train/1:1"));
+  EXPECT_TRUE(ids.contains("test/2:0"));
   EXPECT_EQ(page["command"], "armwright optimize q1-complex --set physics.engine=articulated");
   // The simulation repeats the errors that the run recorded.
   EXPECT_EQ(page["notes"], json::array());
@@ -147,14 +147,13 @@ TEST_F(RunPage, HasTheHealthOfTheWinnerOnTheMedianCase) {
   EXPECT_EQ(health["cases"], 6);
   EXPECT_EQ(health["moves"]["count"], 24);  // the first of 25 points does not count
   const json& replay = page["replays"][0];
-  const auto is_median = [&](const json& one) {
-    return one["id"] == health["case"] &&
-           one["label"].get<std::string>().ends_with("the median of 6");
-  };
-  const auto median = std::ranges::find_if(replay["cases"], is_median);
-  ASSERT_NE(median, replay["cases"].end()) << health["case"];
+  // The page opens with the first case, the median by error.
+  const json& median = replay["cases"][0];
+  ASSERT_EQ(median["id"], health["case"]);
+  const auto label = median["label"].get<std::string>();
+  EXPECT_TRUE(label.ends_with("the median of 6 by error")) << label;
   // The replay has the same efforts in single precision.
-  const json& motion = (*median)["motions"][0];
+  const json& motion = median["motions"][0];
   const auto efforts = unpack_f32(motion["effort"]);
   for (std::size_t joint = 0; joint < 4; ++joint) {
     const json& limits = replay["designs"][0]["effort_limits"][joint];
@@ -233,8 +232,9 @@ TEST_F(RunPage, SaysThatATrainingCaseIsReplayedOnAnotherPlant) {
   const auto get_label = [&](const std::string& folder, std::vector<std::string> overrides) {
     make_run(make_plan("q1-complex", "ga", 16, std::move(overrides)), folder);
     const json page = make_page(folder);
-    EXPECT_EQ(page["replays"][0]["cases"][0]["set"], "train/1");
-    return page["replays"][0]["cases"][0]["label"].get<std::string>();
+    const json& training = page["replays"][0]["cases"].back();
+    EXPECT_EQ(training["set"], "train/1");
+    return training["label"].get<std::string>();
   };
   const std::string mass = "perturbation.mass_relative=0.1";
   EXPECT_THAT(get_label("a", {mass}), Not(HasSubstr("plant")));

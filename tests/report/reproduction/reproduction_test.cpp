@@ -15,6 +15,7 @@
 namespace armwright {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -209,6 +210,16 @@ TEST(Reproduction, WhatTheThesisShowsIsInThePlan) {
     EXPECT_EQ(to_text(run.schedule), "fresh:1") << run.problem.name;
     EXPECT_EQ(run.budget, run.problem.budget);
   }
+}
+
+TEST(Reproduction, AReasonOfNoResultIsRefused) {
+  const SmallReproduction small;
+  const std::filesystem::path config = small.path() / "small.toml";
+  write_file_atomically(config, read_file(config, kLimit_bytes) +
+                                    "[[difference]]\nparts = [\"A.99\"]\nreason = \"None.\"\n");
+  EXPECT_THAT(usage_error_of([&] { plan_reproduction(small.request()); }),
+              AllOf(HasSubstr("small.toml: difference.parts"), HasSubstr("unknown result 'A.99'"),
+                    HasSubstr("A.9")));
 }
 
 TEST(Reproduction, PublishedTorquesAreThoseOfThePublishedDesigns) {

@@ -43,6 +43,9 @@ id = "fig-1"
 title = "A run and a published design"
 thesis = "Fig. 1"
 series = [{name = "T1", of = "T1"}, {name = "A.8", of = "A.8"}]
+[[difference]]
+parts = ["A.9", "T1"]
+reason = "The reason."
 [[replay]]
 id = "ramp"
 title = "A replay"

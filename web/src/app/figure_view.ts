@@ -1,17 +1,22 @@
-// The view of a figure in the page: its choices, its chart, the text of a chosen point, and the
-// downloads.
+// The view of a figure in the page: its choices, its chart, the text of a chosen point, the values at
+// the pointer, the zoom, and the downloads.
 import { echarts, type EChartsOption, type EChartsType } from '../charts/echarts';
 import { kLight, type Look } from '../charts/look';
 import { fit_width, kNarrow_px } from '../charts/narrow';
 import { draw_svg, get_initial_picks, get_paper_size, kDefaultHeight } from '../charts/svg';
+import { can_zoom, read_curves, zoom_in, type Range, type Selected } from '../charts/zoom';
 import { to_csv } from '../csv';
 import type { Column, Figure, Picked } from '../model';
 import { format_number } from '../numbers';
+import { CrossHair, type Crossing } from './cross_hair';
 import { make, make_button, make_select } from './dom';
 import { download } from './download';
+import { add_gestures, find_panel } from './gestures';
 import { make_provenance } from './provenance';
+import { describe_table } from './spoken';
 import { show_table } from './table_view';
-import type { Clock } from './clock';
+import { make_text } from './term_view';
+import { make_time_key, type Change, type Clock } from './clock';
 import type { View } from './view';
 
 interface Hovered {
@@ -50,12 +55,52 @@ function describe_point(hovered: Hovered | Hovered[], columns: Column[]): HTMLEl
   return box;
 }
 
-// Returns `option` with the series switched on that the reader has chosen, so that a new drawing
-// keeps the choice.
-function keep_selection(chart: EChartsType, option: EChartsOption): EChartsOption {
-  const before = (chart.getOption() as { legend?: { selected?: Record<string, boolean> }[] } | undefined)?.legend?.[0]?.selected;
-  const legend = (option as { legend?: object }).legend;
-  return before === undefined || legend === undefined ? option : { ...option, legend: { ...legend, selected: before } };
+type Named = { name?: string } | { name?: string }[];
+
+const kLegendHint = 'Click to hide or show. Double-click or Alt-click to see this one alone.';
+
+// Returns the option with what only a page has: the series that the reader has switched on, a hint at
+// the entries of the legend, and the text for the pointer over a point.
+function add_page_parts(
+  option: EChartsOption,
+  look: Look,
+  selected: Selected | undefined,
+  describe: (hovered: Hovered | Hovered[]) => HTMLElement,
+) {
+  const { legend, tooltip } = option as { legend?: { selected?: Selected }; tooltip?: { trigger?: string } };
+  return {
+    ...option,
+    legend: legend && {
+      ...legend,
+      selected: selected ?? legend.selected,
+      tooltip: { show: true, formatter: () => make('div', { class: 'tip' }, kLegendHint) },
+    },
+    tooltip: {
+      ...tooltip,
+      // The cross-hair shows the values of curves.
+      trigger: tooltip?.trigger === 'axis' ? 'none' : tooltip?.trigger,
+      formatter: describe,
+      backgroundColor: look.background,
+      borderColor: look.muted,
+      textStyle: { color: look.text },
+      confine: true,
+    },
+  };
+}
+
+// Returns the series to show after the reader asked for `name` alone: this one, or all if it was
+// already alone.
+function isolate(selected: Selected, name: string): Selected {
+  const is_alone = Object.keys(selected).every((one) => one === name || !selected[one]);
+  const after: Selected = {};
+  Object.keys(selected).forEach((one) => {
+    after[one] = is_alone || one === name;
+  });
+  return after;
+}
+
+function to_list<T>(parts: T | T[] | undefined): T[] {
+  return parts === undefined ? [] : Array.isArray(parts) ? parts : [parts];
 }
 
 export function make_figure_view(first: Figure, look: Look, clock: Clock): View {
@@ -66,71 +111,171 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
   const plot = make('div', {
     class: 'plot',
     role: 'img',
-    'aria-label': figure.title + '. ' + figure.caption,
   });
   plot.style.height = (figure.height ?? kDefaultHeight) + 'px';
   let drawn_width = 0; // pixels; a narrow chart depends on its width
+  let drawn: EChartsOption = {}; // for a wide place
+  let drawn_zoom: Range | null = null;
+  let is_zoomable = false;
+  let selected: Selected | undefined; // undefined until the reader uses the legend of these series
+  let drawn_names: string | undefined; // of the legend
   const cursor = make('div', { class: 'cursor', 'aria-hidden': 'true' });
-  const frame = make('div', { class: 'frame' }, plot, cursor);
+  const cross_hair = new CrossHair();
+  const band = add_gestures(
+    plot,
+    () => (is_zoomable ? chart : null),
+    () => to_list((drawn as { xAxis?: object }).xAxis).length,
+    {
+      on_point: (panel, x) => clock.point(get_key(), x + get_part(panel).from),
+      on_leave: () => clock.point(get_key(), null),
+      on_range: (panel, { from, to }) => clock.zoom(get_key(), { from: from + get_part(panel).from, to: to + get_part(panel).from }),
+      on_reset: () => clock.zoom(get_key(), null),
+    },
+  );
+  const frame = make('div', { class: 'frame' }, plot, cursor, cross_hair.element, band);
   const details = make('div', { class: 'details', role: 'status' });
+  const reset = make_button('Reset zoom', () => clock.zoom(get_key(), null), {
+    class: 'reset-zoom',
+    hidden: '',
+    title: 'Escape or a double click, too',
+  });
 
-  function draw(keep: boolean): void {
+  // Returns the name of the abscissa, which figures over the time of the same case share. The choices
+  // of another figure may change its abscissa.
+  function get_key(): string {
+    return figure.time === undefined
+      ? `figure ${figure.id} ${JSON.stringify(picked)}`
+      : make_time_key(figure.time.replay, figure.time.case(picked));
+  }
+
+  // Returns the part of the shared abscissa that a panel shows. Its own abscissa begins with it.
+  function get_part(panel: number): Range {
+    return figure.time?.panels?.(picked)[panel] ?? { from: 0, to: Infinity };
+  }
+
+  function get_selected(): Selected {
+    return selected ?? (drawn as { legend?: { selected?: Selected } }).legend?.selected ?? {};
+  }
+
+  function find_zooms(): (Range | null)[] {
+    const zoom = clock.zoom_of(get_key());
+    return to_list((drawn as { xAxis?: object }).xAxis).map((_, i) => {
+      const part = get_part(i);
+      if (zoom === null || zoom.to <= part.from || zoom.from >= part.to) {
+        return null;
+      }
+      const is_part = part.to < Infinity;
+      return { from: is_part ? Math.max(0, zoom.from - part.from) : zoom.from, to: Math.min(zoom.to, part.to) - part.from };
+    });
+  }
+
+  function draw(): void {
     if (chart === null) {
       return;
     }
     drawn_width = plot.clientWidth;
-    const { option: drawn, height_px } = fit_width(figure.draw(current_look, picked), drawn_width, figure.height ?? kDefaultHeight);
+    const zoom = clock.zoom_of(get_key());
+    drawn_zoom = zoom;
+    drawn = figure.draw(current_look, picked, zoom ?? undefined);
+    const names = JSON.stringify((drawn as { legend?: { data?: unknown[] } }).legend?.data);
+    if (names !== drawn_names) {
+      drawn_names = names;
+      selected = undefined;
+    }
+    is_zoomable = can_zoom(drawn);
+    plot.classList.toggle('zoomable', is_zoomable);
+    zoom_hint.hidden = !is_zoomable;
+    const zooms = find_zooms();
+    drawn = zoom === null ? drawn : zoom_in(current_look, drawn, zooms, get_selected());
+    reset.hidden = zooms.every((one) => one === null);
+    const { option, height_px } = fit_width(drawn, drawn_width, figure.height ?? kDefaultHeight);
     if (plot.clientHeight !== height_px) {
       plot.style.height = height_px + 'px';
       chart.resize();
     }
+    plot.setAttribute('aria-label', `${figure.title}. ${describe_table(figure.table(picked))}`);
     // Computing a table can take long and pointers move often, so the columns are computed once per
     // drawing.
     let columns: ReturnType<typeof figure.table>['columns'] | null = null;
-    chart.setOption(
-      {
-        ...(keep ? keep_selection(chart, drawn) : drawn),
-        tooltip: {
-          ...((drawn as { tooltip?: object }).tooltip ?? {}),
-          formatter: (hovered: Hovered | Hovered[]) => {
-            columns ??= figure.table(picked).columns;
-            return describe_point(hovered, columns);
-          },
-          backgroundColor: current_look.background,
-          borderColor: current_look.muted,
-          textStyle: { color: current_look.text },
-          confine: true,
-        },
-      },
-      { notMerge: true },
-    );
+    const describe = (hovered: Hovered | Hovered[]): HTMLElement => {
+      columns ??= figure.table(picked).columns;
+      return describe_point(hovered, columns);
+    };
+    chart.setOption(add_page_parts(option, current_look, selected, describe), { notMerge: true });
     move_cursor();
+    move_cross_hair();
   }
 
-  // Shows the time of the replay as a line over the chart. The chart itself does not change.
+  // Shows the time of the replay as a line over the panel that has it. The chart itself does not
+  // change.
   function move_cursor(): void {
+    cursor.hidden = true;
     const time = figure.time;
-    const visible = chart !== null && time !== undefined && clock.replay === time.replay && clock.case_id === time.case(picked);
-    cursor.hidden = !visible;
-    if (visible && chart !== null) {
-      const x = chart.convertToPixel({ xAxisIndex: 0 }, clock.time_s);
-      const inside = chart.containPixel({ gridIndex: 0 }, [x, plot.clientHeight / 2]);
-      cursor.hidden = !inside;
-      cursor.style.transform = `translateX(${x}px)`;
+    if (chart === null || time === undefined || clock.replay !== time.replay || clock.case_id !== time.case(picked)) {
+      return;
     }
+    find_places(chart, clock.time_s).forEach(({ panel, x_px }) => {
+      cursor.hidden = false;
+      cursor.style.transform = `translate(${x_px}px, ${panel.y}px)`;
+      cursor.style.height = `${panel.height}px`;
+    });
+  }
+
+  // Returns where a place of the shared abscissa is in each panel that shows it.
+  function find_places(on: EChartsType, at: number): { index: number; panel: Crossing['panel']; x_px: number }[] {
+    const places: { index: number; panel: Crossing['panel']; x_px: number }[] = [];
+    to_list((drawn as { xAxis?: object }).xAxis).forEach((_, index) => {
+      const part = get_part(index);
+      const panel = find_panel(on, index);
+      const x_px = on.convertToPixel({ xAxisIndex: index }, at - part.from) as number;
+      if (at >= part.from && at <= part.to && x_px >= panel.x - 0.5 && x_px <= panel.x + panel.width + 0.5) {
+        places.push({ index, panel, x_px });
+      }
+    });
+    return places;
+  }
+
+  function move_cross_hair(): void {
+    const { tooltip, xAxis, yAxis } = drawn as { tooltip?: { trigger?: string }; xAxis?: Named; yAxis?: Named };
+    const at = clock.pointer?.key === get_key() ? clock.pointer.at : null;
+    if (chart === null || at === null || tooltip?.trigger !== 'axis' || !is_zoomable) {
+      cross_hair.show([]);
+      return;
+    }
+    const names = to_list(xAxis).map((axis) => axis.name ?? '');
+    cross_hair.show(
+      find_places(chart, at).map(({ index, panel, x_px }) => ({
+        panel,
+        x_px,
+        at: at - get_part(index).from,
+        x_name: names[index] || names[names.length - 1],
+        y_name: to_list(yAxis)[index]?.name ?? '',
+        readings: read_curves(drawn, index, at - get_part(index).from, get_selected()),
+      })),
+    );
   }
 
   // If the replay shows another case and the figure has the choice of a case, the figure shows that
   // case too.
-  function follow_clock(): void {
+  function follow_clock(change: Change): void {
     const time = figure.time;
+    if (change === 'pointer') {
+      move_cross_hair();
+      return;
+    }
+    if (change === 'zoom') {
+      if (drawn_zoom !== clock.zoom_of(get_key())) {
+        draw();
+      }
+      return;
+    }
     if (time !== undefined && clock.replay === time.replay && clock.case_id !== time.case(picked)) {
       for (const choice of figure.choices ?? []) {
         const option = choice.options.find((one) => time.case({ ...picked, [choice.id]: one.value }) === clock.case_id);
         if (option !== undefined) {
           picked[choice.id] = option.value;
           selects[choice.id].value = option.value;
-          draw(true);
+          draw();
           break;
         }
       }
@@ -150,19 +295,53 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
       return;
     }
     chart = echarts.init(plot, null, { renderer: 'svg' });
-    draw(false);
+    draw();
     chart.on('click', (event) => {
       const { note, command } = get_provenance(event.data);
       show_details(note, command);
     });
+    chart.on('legendselectchanged', (event) => {
+      const { name, selected: after } = event as unknown as { name: string; selected: Selected };
+      selected = is_alone_click ? isolate(after, name) : after;
+      if (is_alone_click) {
+        draw();
+      }
+      move_cross_hair();
+    });
     chart.getZr().on('click', (event: { offsetX: number; offsetY: number }) => {
       const time = figure.time;
-      if (chart !== null && time !== undefined && chart.containPixel({ gridIndex: 0 }, [event.offsetX, event.offsetY])) {
-        const seconds = chart.convertFromPixel({ xAxisIndex: 0 }, event.offsetX);
-        clock.set(time.replay, time.case(picked), seconds as number);
-      }
+      const on = chart;
+      to_list((drawn as { xAxis?: object }).xAxis).forEach((_, panel) => {
+        if (on !== null && time !== undefined && on.containPixel({ gridIndex: panel }, [event.offsetX, event.offsetY])) {
+          const seconds = on.convertFromPixel({ xAxisIndex: panel }, event.offsetX) as number;
+          clock.set(time.replay, time.case(picked), seconds + get_part(panel).from);
+        }
+      });
     });
   }
+
+  // The chart hears of a click after this listener.
+  let is_alone_click = false;
+  plot.addEventListener(
+    'click',
+    (event) => {
+      is_alone_click = event.detail === 2 || event.altKey || event.ctrlKey || event.metaKey;
+    },
+    { capture: true },
+  );
+  const on_key = (event: KeyboardEvent): void => {
+    if (event.key === 'Escape' && document.querySelector('dialog[open]') === null) {
+      clock.zoom(get_key(), null);
+    }
+  };
+  // After a tap the values stay until the next one.
+  const on_tap = (event: PointerEvent): void => {
+    if (event.pointerType !== 'mouse' && !plot.contains(event.target as Node)) {
+      clock.point(get_key(), null);
+    }
+  };
+  document.addEventListener('keydown', on_key);
+  document.addEventListener('pointerdown', on_tap);
 
   const choices = make('div', { class: 'choices' });
   const selects: Record<string, HTMLSelectElement> = {};
@@ -170,7 +349,8 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     const select = make_select(choice.options, choice.initial, (value) => {
       picked[choice.id] = value;
       show_details(undefined, undefined);
-      draw(false);
+      selected = undefined;
+      draw();
       if (figure.time !== undefined && figure.time.case(picked) !== clock.case_id) {
         clock.set(figure.time.replay, figure.time.case(picked), 0);
       }
@@ -181,6 +361,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
   const buttons = make(
     'div',
     { class: 'buttons' },
+    reset,
     make_button('Table', () => show_table(figure.title, figure.table(picked)), { title: 'The numbers of this figure' }),
     make_button('CSV', () => download(figure.id + '.csv', 'text/csv', to_csv(figure.table(picked))), {
       title: 'Download the numbers of this figure',
@@ -194,7 +375,9 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
       { title: 'Download this figure' },
     ),
   );
-  const caption = make('figcaption', {}, figure.caption);
+  const caption_text = make('span', {}, ...make_text(figure.caption));
+  const zoom_hint = make('span', { class: 'zoom-hint', hidden: '' }, ' Drag across the plot to zoom.');
+  const caption = make('figcaption', {}, caption_text, zoom_hint);
   const element = make(
     'figure',
     { class: figure.width === 'full' ? 'card full' : 'card', id: 'figure-' + figure.id, 'data-figure': figure.id },
@@ -214,9 +397,10 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     mount();
     chart?.resize();
     if (chart !== null && plot.clientWidth !== drawn_width && Math.min(plot.clientWidth, drawn_width) < kNarrow_px) {
-      draw(true);
+      draw();
     }
     move_cursor();
+    move_cross_hair();
   });
   observer.observe(plot);
   const stop_listening = clock.listen(follow_clock);
@@ -225,21 +409,26 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     element,
     set_look(next: Look) {
       current_look = next;
-      draw(true);
+      draw();
     },
     update(item) {
       const choices_of = (one: Figure): string => JSON.stringify(one.choices ?? []);
       if (item.kind !== 'figure' || choices_of(item) !== choices_of(figure)) {
         return false;
       }
+      if (item.caption !== figure.caption) {
+        caption_text.replaceChildren(...make_text(item.caption));
+      }
       figure = item;
-      caption.textContent = item.caption;
-      draw(true);
+      element.classList.toggle('full', item.width === 'full');
+      draw();
       return true;
     },
     settle: mount,
     dispose() {
       stop_listening();
+      document.removeEventListener('keydown', on_key);
+      document.removeEventListener('pointerdown', on_tap);
       observer.disconnect();
       chart?.dispose();
       chart = null;

@@ -4,11 +4,11 @@ import type { PageData } from '../data';
 
 const kPeriod_ms = 2000;
 
-export function follow(on_data: (data: PageData) => void): void {
+// Stops once the data are finished; `finished` says whether those in the page are.
+export function follow(finished: boolean, on_data: (data: PageData) => void): void {
   const root = document.documentElement;
   let tag = root.getAttribute('data-live') ?? '';
   async function ask(): Promise<void> {
-    let finished = false;
     try {
       const answer = await fetch('data.json', { headers: { 'If-None-Match': tag }, cache: 'no-store' });
       if (answer.status === 200) {
@@ -25,5 +25,9 @@ export function follow(on_data: (data: PageData) => void): void {
       setTimeout(() => void ask(), kPeriod_ms);
     }
   }
-  setTimeout(() => void ask(), kPeriod_ms);
+  if (finished) {
+    root.setAttribute('data-connection', 'finished');
+  } else {
+    setTimeout(() => void ask(), kPeriod_ms);
+  }
 }

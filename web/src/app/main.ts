@@ -2,7 +2,6 @@
 // while a study runs, and shows them.
 import { kDark, kLight, type Look } from '../charts/look';
 import type { PageData } from '../data';
-import { make_page } from '../figures/page';
 import '../replay/replay.css';
 import './page.css';
 import './summary.css';
@@ -34,9 +33,10 @@ function start(): void {
       view.set_look(apply());
     },
   });
-  view.show(make_page(JSON.parse(data.textContent ?? '') as PageData));
+  const first = JSON.parse(data.textContent ?? '') as PageData;
+  view.show(first);
   if (document.documentElement.hasAttribute('data-live')) {
-    follow((next) => view.show(make_page(next)));
+    follow(first.finished, (next) => view.show(next));
   }
 }
 

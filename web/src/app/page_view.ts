@@ -1,23 +1,28 @@
 // The view of the whole page: the head, the tabs, and the open tab.
 import type { Look } from '../charts/look';
-import type { Fact } from '../data';
+import type { Fact, PageData } from '../data';
+import { make_page } from '../figures/page';
 import type { Item, Page, Tab } from '../model';
 import { make_replay, type ReplayView } from '../replay/replay';
-import { make_clock, type Clock } from './clock';
+import { make_clock, make_time_key, type Clock } from './clock';
 import { make, make_button } from './dom';
 import { make_figure_view } from './figure_view';
+import { make_filter_view } from './filter_view';
+import { make_progress_view } from './progress_view';
 import { make_summary_view } from './summary_view';
 import { make_table_view } from './table_view';
+import { make_text } from './term_view';
 import { make_text_view } from './text_view';
 import type { View } from './view';
 
+const kFewestToFilter = 3; // optimizers
 const kLongFact = 100; // characters; a longer value has all columns of the list
 
 function make_facts(facts: Fact[]): HTMLElement {
   const list = make('dl', { class: 'facts' });
   for (const fact of facts) {
     const shape = fact.value.length > kLongFact ? 'long' : 'short';
-    list.append(make('div', { class: shape }, make('dt', {}, fact.label), make('dd', {}, fact.value)));
+    list.append(make('div', { class: shape }, make('dt', {}, ...make_text(fact.label)), make('dd', {}, fact.value)));
   }
   return list;
 }
@@ -32,14 +37,24 @@ function make_replay_view(id: string, title: string, page: Page, item: Item, loo
   const sets = item.kind === 'replay' ? item.sets : [];
   const replay: ReplayView = make_replay(host, page.data.robots, sets, look, {
     on_time: (set, case_id, time_s) => clock.set(set, case_id, time_s),
+    on_point: (set, case_id, time_s) => clock.point(make_time_key(set, case_id), time_s),
   });
-  const stop = clock.listen(() => {
+  const follow = (): void => {
     const state = replay.state;
     if (clock.replay !== state.set || clock.case_id !== state.case) {
       replay.choose(clock.replay, clock.case_id);
     }
-    if (Math.abs(clock.time_s - state.time_s) > 1e-9) {
+    if (clock.replay === state.set && clock.case_id === state.case && Math.abs(clock.time_s - state.time_s) > 1e-9) {
       replay.set_time(clock.time_s);
+    }
+  };
+  follow(); // the reader may return from another tab
+  const stop = clock.listen((change) => {
+    if (change === 'time') {
+      follow();
+    } else if (change === 'pointer') {
+      const is_here = clock.pointer?.key === make_time_key(replay.state.set, replay.state.case);
+      replay.set_pointer(is_here ? (clock.pointer?.at ?? null) : null);
     }
   });
   (window as unknown as { armwright_replay?: ReplayView }).armwright_replay = replay;
@@ -73,7 +88,7 @@ function make_view(page: Page, item: Item, look: Look, clock: Clock): View {
 }
 
 export interface PageView {
-  show(page: Page): void;
+  show(data: PageData): void;
   set_look(look: Look): void;
 }
 
@@ -87,27 +102,38 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
   const clock = make_clock();
   let look = first_look;
   let page: Page | null = null;
+  let shown_data: PageData | null = null;
   let views: View[] = [];
   let open = '';
 
   const title = make('h1');
   const subtitle = make('p', { class: 'subtitle' });
   const state = make('p', { class: 'state', role: 'status' });
+  const progress = make_progress_view();
   const notes = make('ul', { class: 'notes' });
+  const filter = make_filter_view(() => {
+    if (shown_data !== null) {
+      show(shown_data);
+    }
+  });
   const list = make('div', { role: 'tablist', 'aria-label': 'Sections' });
-  const panel = make('main', { role: 'tabpanel', tabindex: '-1' });
+  const panel = make('div', { role: 'tabpanel', id: 'panel', tabindex: '0' });
   const foot = make('footer');
+  // The address after # names the open tab, so the link moves the focus itself.
+  const skip = make('a', { class: 'skip', href: '#panel' }, 'To the contents');
+  skip.addEventListener('click', (event) => {
+    event.preventDefault();
+    panel.focus();
+  });
   host.append(
+    skip,
     make(
       'header',
       {},
-      make('div', { class: 'titles' }, title, subtitle),
-      state,
+      make('div', { class: 'titles' }, title, subtitle, state),
       make_button('Light / dark', events.toggle_theme, { class: 'theme', 'aria-label': 'Light / dark' }),
     ),
-    notes,
-    list,
-    panel,
+    make('main', {}, progress.element, notes, filter.element, list, panel),
     foot,
   );
 
@@ -141,7 +167,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
       return;
     }
     const grid = make('div', { class: 'cards' });
-    panel.append(grid);
+    panel.append(make('h2', {}, tab.title), grid);
     for (const item of tab.items) {
       const view = make_view(page, item, look, clock);
       views.push(view);
@@ -182,7 +208,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
         choose(tab.id, false);
         history.replaceState(null, '', '#' + encodeURIComponent(tab.id));
       },
-      { role: 'tab', id: 'tab-' + tab.id, 'data-tab': tab.id },
+      { role: 'tab', id: 'tab-' + tab.id, 'data-tab': tab.id, 'aria-controls': panel.id },
     );
   }
 
@@ -208,7 +234,6 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
     close();
     events.on_print(true);
     page?.tabs.forEach((tab) => {
-      panel.append(make('h2', {}, tab.title));
       append_items({ ...tab, items: tab.items.filter((item) => item.kind !== 'replay') });
     });
     views.forEach((view) => view.settle());
@@ -219,25 +244,30 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
   });
   window.addEventListener('hashchange', () => choose(decodeURIComponent(location.hash.slice(1)), false));
 
+  function show(data: PageData): void {
+    shown_data = data;
+    filter.element.hidden = data.kind !== 'study' || data.optimizers.length < kFewestToFilter;
+    const next = make_page(data, data.kind === 'study' ? filter.apply(data) : undefined);
+    page = next;
+    document.title = data.title;
+    title.textContent = data.title;
+    subtitle.textContent = data.subtitle;
+    state.textContent = data.watched !== null && data.finished ? 'Finished' : '';
+    progress.show(data);
+    notes.replaceChildren(...data.notes.map((note) => make('li', {}, note)));
+    const shown = next.tabs.find((tab) => tab.id === open);
+    foot.replaceChildren(
+      make('p', {}, `armwright ${data.program.version} (${data.program.commit}). Made by `, make('code', {}, data.command)),
+      make('p', {}, 'Folder: ', make('code', {}, data.folder)),
+    );
+    if (shown === undefined || !same_tabs(next.tabs) || !update_items(shown)) {
+      list.replaceChildren(...next.tabs.map(make_tab_button));
+      choose(open || decodeURIComponent(location.hash.slice(1)), false);
+    }
+  }
+
   return {
-    show(next: Page) {
-      page = next;
-      const { data } = next;
-      document.title = data.title;
-      title.textContent = data.title;
-      subtitle.textContent = data.subtitle;
-      state.textContent = data.progress === null ? '' : `${data.progress.done} of ${data.progress.total} ${data.progress.unit}`;
-      notes.replaceChildren(...data.notes.map((note) => make('li', {}, note)));
-      const shown = next.tabs.find((tab) => tab.id === open);
-      foot.replaceChildren(
-        make('p', {}, `armwright ${data.program.version} (${data.program.commit}). Made by `, make('code', {}, data.command)),
-        make('p', {}, 'Folder: ', make('code', {}, data.folder)),
-      );
-      if (shown === undefined || !same_tabs(next.tabs) || !update_items(shown)) {
-        list.replaceChildren(...next.tabs.map(make_tab_button));
-        choose(open || decodeURIComponent(location.hash.slice(1)), false);
-      }
-    },
+    show,
     set_look(next: Look) {
       look = next;
       views.forEach((view) => view.set_look(next));

@@ -6,6 +6,8 @@ import { make_cut_box } from './cut_box';
 import { make, make_button } from './dom';
 import { download } from './download';
 import { make_provenance } from './provenance';
+import { explain, make_text } from './term_view';
+import { split_terms } from './terms';
 import type { View } from './view';
 
 // A table shows this many rows at a time, so that a table of 10 000 cells opens at once.
@@ -92,12 +94,14 @@ function make_table(title: string, table: DataTable, details: HTMLElement, order
   const head = make('tr');
   table.columns.forEach((column, i) => {
     const heading = make('th', { scope: 'col', class: column.numeric ? 'number' : '' });
-    heading.append(
-      make_button(get_unbroken_heading(column), () => sort(i, order.column === i ? -order.direction : 1), {
-        class: 'sort',
-        title: 'Sort by this column',
-      }),
-    );
+    const button = make_button(get_unbroken_heading(column), () => sort(i, order.column === i ? -order.direction : 1), { class: 'sort' });
+    const term = split_terms(column.label).find((part) => part.term !== undefined)?.term;
+    if (term === undefined) {
+      button.title = 'Sort by this column';
+    } else {
+      explain(button, term);
+    }
+    heading.append(button);
     headings.push(heading);
     head.append(heading);
   });
@@ -130,7 +134,7 @@ export function make_table_view(item: TableItem): View {
     ),
     body,
     details,
-    item.caption ? make('p', { class: 'caption' }, item.caption) : null,
+    item.caption ? make('p', { class: 'caption' }, ...make_text(item.caption)) : null,
   );
   return {
     element,

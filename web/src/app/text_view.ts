@@ -1,11 +1,13 @@
 // The view of a text: paragraphs under a title, a headline, or a text that is folded away.
 import type { TextItem } from '../model';
 import { make } from './dom';
+import { make_text } from './term_view';
 import type { View } from './view';
 
-const make_paragraphs = (item: TextItem): HTMLElement[] => item.paragraphs.map((text) => make('p', {}, text));
+const make_paragraphs = (item: TextItem): HTMLElement[] => item.paragraphs.map((text) => make('p', {}, ...make_text(text)));
 
 export function make_text_view(first: TextItem): View {
+  let texts = JSON.stringify(first.paragraphs);
   const title = make('h3', {}, first.title);
   const folded = first.style === 'folded';
   const body = make('div', { class: first.style === 'headline' ? 'headline' : '' }, ...make_paragraphs(first));
@@ -20,7 +22,11 @@ export function make_text_view(first: TextItem): View {
         return false;
       }
       title.textContent = item.title;
-      body.replaceChildren(...make_paragraphs(item));
+      // The same paragraphs stay, so that the keyboard's focus stays on a term.
+      if (texts !== JSON.stringify(item.paragraphs)) {
+        texts = JSON.stringify(item.paragraphs);
+        body.replaceChildren(...make_paragraphs(item));
+      }
       return true;
     },
     // Paper shows everything.

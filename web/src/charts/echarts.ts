@@ -3,7 +3,6 @@
 // the browser and, as text, without one.
 import { BarChart, BoxplotChart, CustomChart, HeatmapChart, LineChart, ParallelChart, ScatterChart } from 'echarts/charts';
 import {
-  AriaComponent,
   GridComponent,
   LegendComponent,
   LegendScrollComponent,
@@ -27,7 +26,6 @@ echarts.use([
   LineChart,
   ParallelChart,
   ScatterChart,
-  AriaComponent,
   GridComponent,
   LegendComponent,
   LegendScrollComponent,

@@ -27,21 +27,27 @@ function get_name(entry: unknown): string {
   return typeof entry === 'string' ? entry : String((entry as Part).name);
 }
 
-// Returns the height of the rows into which the entries break. Entries of fixed width, which break
-// into lines of `text_px`, have a row each.
-function find_rows(names: string[], room_px: number, text_px: number, is_fixed: boolean): number[] {
-  const rows: number[] = [];
+interface Row {
+  first: number; // entry
+  height_px: number;
+}
+
+// Returns the rows into which the entries break. Entries of fixed width, which break into lines of
+// `text_px`, have a row each.
+function find_rows(names: string[], room_px: number, text_px: number, is_fixed: boolean): Row[] {
+  const rows: Row[] = [];
   let used = Infinity;
-  for (const name of names) {
+  names.forEach((name, i) => {
     const text = estimate_width(name, 11);
     const width = kSymbol_px + 5 + (is_fixed ? text_px : text);
     if (used + width > room_px) {
-      rows.push(0);
+      rows.push({ first: i, height_px: 0 });
       used = 0;
     }
     used += width + kGap_px;
-    rows[rows.length - 1] = Math.max(rows[rows.length - 1], Math.ceil(text / text_px) * kLine_px);
-  }
+    const row = rows[rows.length - 1];
+    row.height_px = Math.max(row.height_px, Math.ceil(text / text_px) * kLine_px);
+  });
   return rows;
 }
 
@@ -52,11 +58,17 @@ function fit_legend(legend: Part, width_px: number): { legend: Part; height_px: 
   const is_fixed = names.some((name) => estimate_width(name, 11) > text_px);
   const rows = find_rows(names, room_px, text_px, is_fixed);
   const is_paged = rows.length > kMostRows;
+  // The chart breaks its rows where these end, so that it needs the height that is reserved.
+  const broken = rows.reduce(
+    (all, row, i) => all.concat(i > 0 ? ['\n'] : [], (legend.data as unknown[]).slice(row.first, rows[i + 1]?.first)),
+    [] as unknown[],
+  );
   const { width: _, overflow: __, ...style } = legend.textStyle as Part;
   const textStyle = { ...style, fontSize: 11, lineHeight: kLine_px };
   return {
     legend: {
       ...legend,
+      data: is_paged ? legend.data : broken,
       type: is_paged ? 'scroll' : 'plain',
       orient: 'horizontal',
       left: kEdge_px,
@@ -68,7 +80,7 @@ function fit_legend(legend: Part, width_px: number): { legend: Part; height_px: 
       itemWidth: kSymbol_px,
       textStyle: is_fixed || is_paged ? { ...textStyle, width: text_px, overflow: is_paged ? 'truncate' : 'break' } : textStyle,
     },
-    height_px: is_paged ? kLine_px + kGap_px : rows.reduce((sum, row) => sum + row + kGap_px, 0),
+    height_px: is_paged ? kLine_px + kGap_px : rows.reduce((sum, row) => sum + row.height_px + kGap_px, 0),
   };
 }
 
@@ -101,7 +113,8 @@ function fit_panels(option: Part, grids: Part[], from: { width_px: number; heigh
 }
 
 // Returns the chart `drawn`, which is `height_px` high, for a place of `width_px`. A wide place gets it
-// unchanged. In a narrow one, the options in `narrow` of a grid replace those of the grid itself.
+// unchanged. In a narrow one, the options in `narrow` of a grid replace those of the grid itself;
+// its `head` is the height in pixels between the legend and the grid.
 export function fit_width(drawn: EChartsOption, width_px: number, height_px: number): FittedChart {
   if (width_px >= kNarrow_px || drawn.grid === undefined) {
     return { option: drawn, height_px };
@@ -116,12 +129,13 @@ export function fit_width(drawn: EChartsOption, width_px: number, height_px: num
   }
   const grids = Array.isArray(option.grid) ? (option.grid as Part[]) : [option.grid as Part];
   const top_px = to_px(grids[0].top, height_px);
-  const head_px = legend_px === 0 ? top_px : legend_px + kHead_px;
+  const narrow = (grids[0].narrow as Part | undefined) ?? {};
+  const head_px = legend_px === 0 ? top_px : legend_px + Number(narrow.head ?? kHead_px);
   if (grids.length > 1) {
     return fit_panels(option, grids, { width_px, height_px }, head_px);
   }
   const was_beside = shown?.orient === 'vertical' && shown.left === undefined && legend_px > 0;
-  const grid = { ...grids[0], ...((grids[0].narrow as Part | undefined) ?? {}) };
+  const grid = { ...grids[0], ...narrow };
   const left = to_px(grid.left, width_px);
   const right = was_beside ? kRight_px : to_px(grid.right, width_px);
   const scale = Math.min(1, (kMostMargin * width_px) / (left + right));

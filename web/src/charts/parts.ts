@@ -46,7 +46,6 @@ export function make_chart(look: Look, x: Part | Part[], y: Part | Part[], serie
     backgroundColor: look.background,
     textStyle: { fontFamily: look.font, color: look.text },
     color: look.series,
-    aria: { enabled: true },
     grid: { left: 68, right: 24, top: legend_names.length > 1 ? 44 : 20, bottom: 48 },
     legend:
       legend_names.length > 1
@@ -55,7 +54,7 @@ export function make_chart(look: Look, x: Part | Part[], y: Part | Part[], serie
             top: 4,
             data: legend_names,
             textStyle: { color: look.text, fontFamily: look.font, fontSize: 12 },
-            inactiveColor: look.grid,
+            inactiveColor: look.muted,
             pageTextStyle: { color: look.muted },
             pageIconColor: look.accent,
           }
@@ -74,6 +73,7 @@ export interface LineOptions {
   step?: 'start' | 'end';
   width?: number;
   axis?: number; // index of both axes
+  on_top?: boolean; // over the other curves
 }
 
 // A point with its provenance, if that is known.
@@ -94,6 +94,7 @@ export function make_line(look: Look, index: number, name: string, points: Point
     lineStyle: { color: style.color, type: style.dash, width: options.width ?? 1.8 },
     itemStyle: { color: style.color },
     emphasis: { focus: 'none' },
+    z: options.on_top ? 4 : 3,
     xAxisIndex: options.axis ?? 0,
     yAxisIndex: options.axis ?? 0,
   };

@@ -130,6 +130,8 @@ export function make_name_axis(look: Look, names: string[], width: number): Part
   };
 }
 
+export const kGridLines = 'grid-lines'; // id of the series of make_grid_lines()
+
 // Returns the grid lines at the ticks and the shade of the strip, as a series that must come first.
 export function make_grid_lines(look: Look, x: Scale | null, y: Scale | null): Part {
   const lines: Part[] = [];
@@ -143,6 +145,7 @@ export function make_grid_lines(look: Look, x: Scale | null, y: Scale | null): P
     areas.push([{ yAxis: y.high }, { yAxis: y.end }]);
   }
   return {
+    id: kGridLines,
     type: 'line',
     silent: true,
     data: [],

@@ -46,6 +46,11 @@ export function make_results_table(data: RunData, arm: ArmEvidence): TableItem |
   }
   const has_published = arm.results.some((row) => row.published_mean_m !== null || row.published_torque_n_m !== null);
   const millimetres = (label: string): Column => ({ label, unit: 'mm', numeric: true });
+  const name = (id: string) => arm.designs.filter((design) => design.id === id)[0]?.name ?? id;
+  const sources = arm.results
+    .filter((row) => row.source !== '')
+    .map((row) => ` The source of the design "${name(row.design)}" is: ${row.source}.`)
+    .join('');
   const where = data.test === null ? '' : ` on ${data.test.set}, simulated by ${data.test.engine}`;
   return {
     kind: 'table',
@@ -55,7 +60,8 @@ export function make_results_table(data: RunData, arm: ArmEvidence): TableItem |
       `The positional errors of each design${where}: the mean, the median, the error below which 95 % of the cases stay, and the worst case. ` +
       (has_published
         ? 'The published columns have the values that the thesis printed for the same design. The last column says where.'
-        : 'No results of these designs are published.'),
+        : 'No results of these designs are published.') +
+      sources,
     table: {
       columns: [
         { label: 'design' },
@@ -70,7 +76,7 @@ export function make_results_table(data: RunData, arm: ArmEvidence): TableItem |
         ...(has_published ? [{ label: 'published torque', unit: 'N m', numeric: true, digits: 6 }, { label: 'where' }] : []),
       ],
       rows: arm.results.map((row) => [
-        row.design,
+        name(row.design),
         times(row.mean_m, kMillimetres),
         ...(has_published ? [times(row.published_mean_m, kMillimetres)] : []),
         times(row.median_m, kMillimetres),

@@ -10,7 +10,7 @@ import { are_positive, count_of, find_range, flatten, times } from './quantities
 
 const kCentimetres = 100;
 const kStacked = 8; // with more series the legend would leave no room for the curves
-const kWide = 20; // ratio of the largest to the smallest value from which a linear axis would hide the small ones
+const kWide = 5; // ratio of the largest to the smallest distance from which the axis is logarithmic
 
 export function make_scale_choice(initial: 'log' | 'linear'): Choice {
   return {
@@ -41,7 +41,7 @@ function describe(response: DistanceResponse): string {
   const left_out = response.counted.filter((one) => !one).length;
   const has_published = response.series.some((one) => one.published_mean_m !== null);
   return (
-    `The average positional error of the moves of each length, in the order of the trajectory, ` +
+    `The average positional error of the moves of each length, ` +
     `over ${same ? count_of(numbers[0] ?? 0, 'test case') : `${numbers.join(', ')} test cases, in the order of the legend`}; ` +
     `the bars show the standard error of the mean. ` +
     (left_out > 0 ? `A hollow point is a move that does not count in the error of a case. ` : '') +
@@ -53,10 +53,11 @@ function describe(response: DistanceResponse): string {
 
 export function make_response_figure(response: DistanceResponse, id = response.id): Figure {
   const names = name_series(response);
-  const all = flatten(response.series.map((one) => one.mean_m));
-  const range = find_range(all);
-  const positive = are_positive(all);
-  const wide = positive && range !== null && range[1] > kWide * range[0];
+  const positive = are_positive(flatten(response.series.map((one) => one.mean_m)));
+  const distances = response.distances_m.map((one) => one * kCentimetres);
+  const extent = find_range(distances);
+  const wide = are_positive(distances) && extent !== null && extent[1] > kWide * extent[0];
+  const order = distances.map((_, i) => i).sort((a, b) => distances[a] - distances[b]);
   return {
     kind: 'figure',
     id,
@@ -64,24 +65,21 @@ export function make_response_figure(response: DistanceResponse, id = response.i
     caption: describe(response),
     thesis: response.thesis || undefined,
     height: 400,
-    choices: positive ? [make_scale_choice(wide ? 'log' : 'linear')] : undefined,
+    choices: positive ? [make_scale_choice('log')] : undefined,
     draw: (look, picked) => {
-      const log = positive && (picked.scale ? picked.scale === 'log' : wide);
+      const log = positive && picked.scale !== 'linear';
       const series: Part[] = [];
-      const values = flatten(response.series.map((one) => flatten(make_bars(one, log).map((bar) => [bar[1], bar[2]]))));
+      const values = flatten(response.series.map((one) => flatten(make_bars(one, distances, log).map((bar) => [bar[1], bar[2]]))));
       response.series.forEach((one, s) => {
         const style = get_series_style(look, s);
         const point = (i: number): Point => ({
-          value: [i, times(one.mean_m[i], kMillimetres)],
+          value: [distances[i], times(one.mean_m[i], kMillimetres)],
           command: one.command || undefined,
           note: note_of(response, one, i),
         });
-        const on: Point[] = response.distances_m.map((_, i) => (response.counted[i] ? point(i) : [i, null]));
-        const off: Point[] = response.distances_m
-          .map((_, i) => i)
-          .filter((i) => !response.counted[i])
-          .map(point);
-        series.push(make_line(look, s, names[s], on, { symbols: true }));
+        const on = order.filter((i) => response.counted[i]).map(point);
+        const off = order.filter((i) => !response.counted[i]).map(point);
+        series.push(make_line(look, s, names[s], on, { symbols: true, on_top: s === 0 }));
         if (off.length > 0) {
           series.push({
             type: 'scatter',
@@ -92,23 +90,17 @@ export function make_response_figure(response: DistanceResponse, id = response.i
             itemStyle: { color: look.background, borderColor: style.color, borderWidth: 1.6 },
           });
         }
-        series.push(make_error_bars(names[s], make_bars(one, log), style.color));
+        series.push(make_error_bars(names[s], make_bars(one, distances, log), style.color));
       });
       const stacked = names.length <= kStacked;
       return make_plot(
         look,
-        make_number_axis(
-          look,
-          'x',
-          'distance of the move (cm)',
-          { categories: response.distances_m.map((one) => format_number(one * kCentimetres, 3)) },
-          { nameGap: 38, axisLabel: { color: look.muted, fontFamily: look.font, fontSize: 10, rotate: 60, hideOverlap: true } },
-        ),
+        make_number_axis(look, 'x', 'distance of the move (cm)', { log: wide, values: distances }),
         make_number_axis(look, 'y', 'average positional error (mm)', { log, min: log ? undefined : 0, values }),
         series,
         {
-          grid: { left: 68, right: 24, top: stacked ? 18 + 18 * names.length : 44, bottom: 62 },
-          ...(stacked ? { legend: make_legend_column(look.text, look.font, look.grid, names) } : {}),
+          grid: { left: 68, right: 24, top: stacked ? 18 + 18 * names.length : 44, bottom: 48 },
+          ...(stacked ? { legend: make_legend_column(look.text, look.font, look.muted, names) } : {}),
         },
       );
     },
@@ -160,13 +152,13 @@ function note_of(response: DistanceResponse, one: ResponseSeries, i: number): st
 }
 
 // Returns the error bars. On a logarithmic axis, a bar that reaches below zero has no lower half.
-function make_bars(one: ResponseSeries, log: boolean): [number, number, number][] {
+function make_bars(one: ResponseSeries, distances: number[], log: boolean): [number, number, number][] {
   const bars: [number, number, number][] = [];
   one.mean_m.forEach((mean, i) => {
     const error = one.standard_error_m[i];
     if (typeof mean === 'number' && typeof error === 'number') {
       const low = log && error >= mean ? mean : mean - error;
-      bars.push([i, low * kMillimetres, (mean + error) * kMillimetres]);
+      bars.push([distances[i], low * kMillimetres, (mean + error) * kMillimetres]);
     }
   });
   return bars;

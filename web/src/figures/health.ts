@@ -3,7 +3,7 @@
 import { join_names, shorten } from '../charts/names';
 import type { Health, HealthGrade, JointHealth, MoveHealth, RunData } from '../data';
 import type { GradeLine, SummaryItem, Tile } from '../model';
-import { format_number, kMillimetres } from '../numbers';
+import { format_duration, format_number, kMillimetres } from '../numbers';
 import { count_of, get_shown, is_number } from './quantities';
 
 const kStates: { [grade in HealthGrade]: { state: string; mark: GradeLine['mark'] } } = {
@@ -98,9 +98,25 @@ function make_torque_tile(data: RunData): Tile | null {
   };
 }
 
-function make_tiles(data: RunData): Tile[] {
-  const { started, cases, evaluations } = data.headline;
+// The time that the run took and when it started, as far as they are recorded.
+function make_time_tile(data: RunData): Tile | null {
+  const { started, times } = data.headline;
   const found = /^(\d{4}-\d\d-\d\d)T(\d\d:\d\d)/.exec(started);
+  if (times === null) {
+    return found === null ? null : { label: 'Started', value: found[1], detail: found[2] + ' UTC' };
+  }
+  const details = [times.cpu_s === null ? 'processor time unknown' : format_duration(times.cpu_s) + ' of processor time'];
+  if (times.lives > 1) {
+    details.push(`in ${times.lives} parts`);
+  }
+  if (found !== null) {
+    details.push(`started ${found[1]}, ${found[2]} UTC`);
+  }
+  return { label: 'Time taken', value: format_duration(times.wall_s), detail: details.join('; ') };
+}
+
+function make_tiles(data: RunData): Tile[] {
+  const { cases, evaluations } = data.headline;
   const tiles: (Tile | null)[] = [
     make_value_tile(data),
     make_failure_tile(data),
@@ -110,7 +126,7 @@ function make_tiles(data: RunData): Tile[] {
       value: String(cases),
       detail: `of ${data.training.budget} in the budget, in ${count_of(evaluations, 'evaluation')}`,
     },
-    found === null ? null : { label: 'Started', value: found[1], detail: found[2] + ' UTC' },
+    make_time_tile(data),
   ];
   return tiles.filter((tile): tile is Tile => tile !== null);
 }

@@ -1,14 +1,15 @@
 // Joint angles, errors and torques over time, with the limits of the torques.
-import { decimate } from '../charts/decimate';
 import { get_series_style, type Look } from '../charts/look';
 import { make_number_axis, make_curve_plot, make_stretches } from '../charts/marks';
 import { shorten_all } from '../charts/names';
 import { make_line, type Part, type Point } from '../charts/parts';
+import type { Range } from '../charts/zoom';
 import type { ReplayCase, ReplaySet, Robot } from '../data';
 import type { Choice, Column, DataTable, Figure, Picked, TableItem, Value } from '../model';
 import { format_number, kDegrees, kMillimetres, unpack } from '../numbers';
-import { flatten } from './quantities';
+import { flatten, kAtLimit } from './quantities';
 import {
+  choose_rows,
   get_case,
   get_column,
   get_motions,
@@ -28,7 +29,6 @@ interface JointView {
   factor: number; // factor from SI to that unit
 }
 
-const kAtLimit = 1 - 1e-4; // share of a limit from which a torque counts as at the limit; torques are packed in 16 bits
 const kStretches = 300; // the whole time divided by the shortest visible gap between two stretches
 
 function get_joints(robot: Robot): JointView[] {
@@ -74,8 +74,8 @@ function get_view(set: ReplaySet, joints: JointView[], picked: Picked, initial: 
   };
 }
 
-function make_points(set: ReplaySet, values: Float32Array): Point[] {
-  return decimate(values).map((i) => [get_time(set, i), isFinite(values[i]) ? values[i] : null]);
+function make_points(set: ReplaySet, values: Float32Array, zoom: Range | undefined): Point[] {
+  return choose_rows(set, values, zoom).map((i) => [get_time(set, i), isFinite(values[i]) ? values[i] : null]);
 }
 
 function scaled(values: Float32Array, factor: number): Float32Array {
@@ -153,7 +153,7 @@ function get_share(effort: Float32Array, limits: [number, number]): number {
   return effort.length === 0 ? 0 : (100 * count) / effort.length;
 }
 
-function draw_torques(look: Look, set: ReplaySet, view: View, count: number) {
+function draw_torques(look: Look, set: ReplaySet, view: View, count: number, zoom: Range | undefined) {
   const series: Part[] = [];
   const single = view.joints.length === 1 ? view.joints[0] : null;
   const { moved } = view;
@@ -164,7 +164,7 @@ function draw_torques(look: Look, set: ReplaySet, view: View, count: number) {
       const share = limits ? `, ${format_number(get_share(effort, limits), 2)} % at a limit` : '';
       const name = `${joint.name}${share}`;
       if (single) {
-        series.push(make_line(look, joint.index, name, make_points(set, effort), { width: 1.2 }));
+        series.push(make_line(look, joint.index, name, make_points(set, effort, zoom), { width: 1.2 }));
         if (limits) {
           const end = get_time(set, view.one.steps - 1);
           limits.forEach((limit) => {
@@ -193,7 +193,7 @@ function draw_torques(look: Look, set: ReplaySet, view: View, count: number) {
           const limit = limits ? Math.abs(effort[i] < 0 ? limits[0] : limits[1]) : NaN;
           relative[i] = (100 * effort[i]) / limit;
         }
-        series.push(make_line(look, joint.index, name, make_points(set, relative), { width: 1.2 }));
+        series.push(make_line(look, joint.index, name, make_points(set, relative, zoom), { width: 1.2 }));
       }
     });
   }
@@ -233,19 +233,25 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
     width: 'full',
     choices: choices(kAll),
     time,
-    draw: (look, picked) => {
+    draw: (look, picked, zoom) => {
       const view = get_view(set, joints, picked, kAll);
       const { moved } = view;
       const series = flatten(
         view.joints.map((joint) => {
           const style = get_series_style(look, joint.index);
-          const target = make_line(look, joint.index, `${joint.name}, target`, make_points(set, get_targets(view.one, joint, count)), {
-            width: 2.2,
-            style: { ...style, dash: 'dotted' },
-          });
+          const target = make_line(
+            look,
+            joint.index,
+            `${joint.name}, target`,
+            make_points(set, get_targets(view.one, joint, count), zoom),
+            {
+              width: 2.2,
+              style: { ...style, dash: 'dotted' },
+            },
+          );
           return moved === undefined
             ? [target]
-            : [make_line(look, joint.index, joint.name, make_points(set, get_angles(moved, joint, count)), { width: 1.2 }), target];
+            : [make_line(look, joint.index, joint.name, make_points(set, get_angles(moved, joint, count), zoom), { width: 1.2 }), target];
         }),
       );
       return make_curve_plot(look, x_axis(look), make_number_axis(look, 'y', `position (${get_unit(view.joints)})`), series);
@@ -278,14 +284,14 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
     width: 'full',
     choices: choices(kAll),
     time,
-    draw: (look, picked) => {
+    draw: (look, picked, zoom) => {
       const view = get_view(set, joints, picked, kAll);
       const { moved } = view;
       const series =
         moved === undefined
           ? []
           : view.joints.map((joint) =>
-              make_line(look, joint.index, joint.name, make_points(set, get_errors(view.one, moved, joint, count)), { width: 1.2 }),
+              make_line(look, joint.index, joint.name, make_points(set, get_errors(view.one, moved, joint, count), zoom), { width: 1.2 }),
             );
       return make_curve_plot(look, x_axis(look), make_number_axis(look, 'y', `error (${get_unit(view.joints)})`), series);
     },
@@ -310,7 +316,7 @@ export function make_joint_figures(set: ReplaySet, robot: Robot | undefined): Fi
     width: 'full',
     choices: choices(torque_initial),
     time,
-    draw: (look, picked) => draw_torques(look, set, get_view(set, joints, picked, torque_initial), count),
+    draw: (look, picked, zoom) => draw_torques(look, set, get_view(set, joints, picked, torque_initial), count, zoom),
     table: (picked) => {
       const view = get_view(set, joints, picked, torque_initial);
       const { moved } = view;

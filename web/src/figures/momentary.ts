@@ -4,11 +4,12 @@ import { decimate } from '../charts/decimate';
 import type { Look } from '../charts/look';
 import { get_line_style, make_number_axis, make_panel_title, make_panels, make_curve_plot, make_stretches } from '../charts/marks';
 import { make_line, type Part, type Point } from '../charts/parts';
+import type { Range } from '../charts/zoom';
 import type { ReplayCase, ReplaySet } from '../data';
 import type { Choice, DataTable, Figure, Picked, Value } from '../model';
 import { format_number, kMillimetres, unpack } from '../numbers';
 import { make_scale_choice } from './distance_response';
-import { get_case, get_motions, get_time, get_window, kAll, make_case_choice, make_design_choice } from './replay_access';
+import { choose_rows, get_case, get_motions, get_time, get_window, kAll, make_case_choice, make_design_choice } from './replay_access';
 
 // A line of the figure: the error of one design on one case.
 export interface ErrorTrace {
@@ -53,7 +54,14 @@ export function draw_moves(look: Look, traces: ErrorTrace[], classes: number[], 
     traces.forEach((trace) => {
       const values = get_move(trace, index);
       const points = decimate(values, kPointsAPanel).map((i) => to_point(get_time(trace.set, i), values[i], log));
-      series.push(make_line(look, trace.style, trace.name, points, { axis: panel, width: 1.4, style: get_line_style(look, trace.style) }));
+      series.push(
+        make_line(look, trace.style, trace.name, points, {
+          axis: panel,
+          width: 1.4,
+          style: get_line_style(look, trace.style),
+          on_top: trace.style === 0,
+        }),
+      );
     });
   });
   return make_curve_plot(
@@ -71,7 +79,7 @@ export function draw_moves(look: Look, traces: ErrorTrace[], classes: number[], 
   );
 }
 
-function draw_case(look: Look, traces: ErrorTrace[], log: boolean) {
+function draw_case(look: Look, traces: ErrorTrace[], log: boolean, zoom: Range | undefined) {
   const series: Part[] = [];
   const first = traces[0];
   if (first !== undefined) {
@@ -83,8 +91,10 @@ function draw_case(look: Look, traces: ErrorTrace[], log: boolean) {
     series.push(make_stretches(look, windows, look.accent, 0, 0.09));
   }
   traces.forEach((trace) => {
-    const points = decimate(trace.error_m).map((i) => to_point(get_time(trace.set, i), trace.error_m[i], log));
-    series.push(make_line(look, trace.style, trace.name, points, { width: 1.2, style: get_line_style(look, trace.style) }));
+    const points = choose_rows(trace.set, trace.error_m, zoom).map((i) => to_point(get_time(trace.set, i), trace.error_m[i], log));
+    series.push(
+      make_line(look, trace.style, trace.name, points, { width: 1.2, style: get_line_style(look, trace.style), on_top: trace.style === 0 }),
+    );
   });
   return make_curve_plot(
     look,
@@ -158,6 +168,15 @@ function get_classes(value: string): number[] {
   return classes;
 }
 
+// Returns the time in the case of each move that the case has.
+function list_times(set: ReplaySet, one: ReplayCase, classes: number[]): Range[] {
+  const dt = set.task.control_period_s;
+  return classes
+    .map((index) => one.segments[index])
+    .filter((segment) => segment !== undefined)
+    .map((segment) => ({ from: segment.first_step * dt, to: (segment.first_step + segment.steps) * dt }));
+}
+
 // Returns the choice of classes: the groups of six of the thesis from class 2 on, then every single
 // class.
 function make_class_choice(set: ReplaySet): Choice {
@@ -198,12 +217,19 @@ export function make_momentary_figure(set: ReplaySet, id = 'momentary-error'): F
     width: 'full',
     height,
     choices: [make_case_choice(set), class_choice, make_design_choice(set, true), make_scale_choice('log')],
-    time: { replay: set.id, case: (picked) => (get_picked_classes(picked) === kAll ? get_case(set, picked).id : '') },
-    draw: (look, picked) => {
+    time: {
+      replay: set.id,
+      case: (picked) => get_case(set, picked).id,
+      panels: (picked) => {
+        const classes = get_picked_classes(picked);
+        return classes === kAll ? [] : list_times(set, get_case(set, picked), get_classes(classes));
+      },
+    },
+    draw: (look, picked, zoom) => {
       const log = picked.scale !== 'linear';
       const classes = get_picked_classes(picked);
       const traces = get_traces(set, picked);
-      return classes === kAll ? draw_case(look, traces, log) : draw_moves(look, traces, get_classes(classes), log, height);
+      return classes === kAll ? draw_case(look, traces, log, zoom) : draw_moves(look, traces, get_classes(classes), log, height);
     },
     table: (picked) => {
       const classes = get_picked_classes(picked);

@@ -59,6 +59,14 @@ export function flatten<T>(lists: T[][]): T[] {
   return all;
 }
 
+export const kAtLimit = 1 - 1e-4; // share of a limit from which a torque counts as at the limit; torques are packed in 16 bits
+
+// Returns the torque as a share of the limit on its side, or null without a limit.
+export function find_limit_share(effort: number, limits: readonly [number | null, number | null] | undefined): number | null {
+  const limit = limits === undefined ? null : limits[effort < 0 ? 0 : 1];
+  return is_number(limit) && limit !== 0 ? effort / limit : null;
+}
+
 // Returns "12 cases" or "1 case".
 export function count_of(count: number, thing: string): string {
   return `${count} ${thing}${count === 1 ? '' : 's'}`;

@@ -1,6 +1,8 @@
 // The common parts of the figures over time: the cases, designs and numbers of a replay set for the
 // choices of the reader.
+import { decimate } from '../charts/decimate';
 import { shorten, shorten_all } from '../charts/names';
+import type { Range } from '../charts/zoom';
 import type { DesignInfo, Motion, Packed, ReplayCase, ReplaySet, Segment } from '../data';
 import type { Choice, Picked } from '../model';
 import { unpack } from '../numbers';
@@ -68,6 +70,15 @@ export function take_column(all: Float32Array, count: number, offset: number): F
 // Returns the time of a row. Row k is the state at the end of control period k.
 export function get_time(set: ReplaySet, row: number): number {
   return (row + 1) * set.task.control_period_s;
+}
+
+// Returns the indices of the rows to draw: all that a line needs, and of a part of the time `zoom`
+// those within it and one beyond each end.
+export function choose_rows(set: ReplaySet, values: Float32Array, zoom: Range | undefined): number[] {
+  const dt = set.task.control_period_s;
+  const first = zoom === undefined ? 0 : Math.max(0, Math.floor(zoom.from / dt) - 2);
+  const last = zoom === undefined ? values.length : Math.min(values.length, Math.ceil(zoom.to / dt) + 1);
+  return decimate(values.subarray(first, Math.max(first, last))).map((i) => first + i);
 }
 
 // Returns the range of time in which the errors of a move count.

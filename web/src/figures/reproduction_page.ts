@@ -3,6 +3,7 @@ import { shorten_all } from '../charts/names';
 import type { DistanceResponse, ReproductionData, SignalCurve } from '../data';
 import type { Cell, Column, Figure, Item, Tab, TableItem, Value } from '../model';
 import { kMillimetres, unpack } from '../numbers';
+import { make_agreement_headline, make_agreement_table } from './agreement';
 import { make_response_figure } from './distance_response';
 import { make_class_figure, type ErrorTrace } from './momentary';
 import { make_published_figure } from './published';
@@ -250,11 +251,13 @@ export function make_reproduction_tabs(data: ReproductionData): Tab[] {
       id: 'overview',
       title: 'Overview',
       items: [
-        data.facts.length > 0 ? { kind: 'facts', id: 'facts', title: 'About', facts: data.facts } : null,
+        make_agreement_headline(data),
+        make_agreement_table(data),
         make_published_figure(data),
         make_results(data),
         make_runs(data),
         ...usable.filter((one) => !is_placed(one)).map((one, _, all) => make_response(one, all.length)),
+        data.facts.length > 0 ? { kind: 'facts', id: 'facts', title: 'About', facts: data.facts } : null,
       ],
     },
     ...kTabs.map((tab) => ({

@@ -82,6 +82,7 @@ export function make_signal_figure(signals: Signals, curves: SignalCurve[], part
     title: options.title,
     thesis: options.thesis,
     height,
+    time: { replay: 'signals', case: () => `${signals.distance_m} m` },
     caption:
       `${parts.map((part) => kParts[part].label).join(' and ')} of the target on its straight line, in a move over `.replace(
         /^./,

@@ -134,7 +134,7 @@ export function make_cost_quality(scope: Scope): Figure | null {
       describe_times(scope) +
       'Targets lie between the start and the best known value, and depend on the optimizers that take part. ' +
       'Neither axis shows how certain a difference is; the figure of the pairs does. ' +
-      (scope.names.length > kMostLabels ? 'The best ' + kMostLabels + ' are named. ' : '') +
+      (scope.shown.length > kMostLabels ? 'The best ' + kMostLabels + ' are named. ' : '') +
       describe_size(scope),
     height: 400,
     choices: make_problem_choices(scope).concat([target]),

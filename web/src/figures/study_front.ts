@@ -134,7 +134,7 @@ export function make_front(all: Scope): Figure | null {
         ? 'The thick stepped line bounds the area that half of the replicates of an optimizer attain. It is a typical front, whereas the points mix lucky and unlucky runs. Thin lines are for other shares of the replicates. '
         : 'With more than two objectives the plane shows a projection: a point that looks dominated may not be dominated. ') +
       'The cross is the reference point of the hypervolume, a tenth beyond the front of all runs together. Points far beyond it are not shown. ' +
-      (scope.names.length > kDrawnAtFirst ? 'The best ' + kDrawnAtFirst + ' optimizers are drawn at first. ' : '') +
+      (scope.shown.length > kDrawnAtFirst ? 'The best ' + kDrawnAtFirst + ' optimizers are drawn at first. ' : '') +
       describe_size(scope),
     height: 420,
     width: 'full',

@@ -126,7 +126,7 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
   );
   // The best rank has the strongest colour.
   const get_fill = (rank: number | null): string =>
-    rank === null ? look.background : mix(look.background, look.series[0], 1 - (rank - 1) / Math.max(1, order.length - 0.4));
+    rank === null ? look.background : mix(look.background, look.series[0], 1 - (rank - 1) / Math.max(1, scope.names.length - 0.4));
   const text = (x: number, y: number, words: string, fill: string, more: Part = {}): Part => ({
     type: 'text',
     style: { x, y, text: words, fill, font: kSize + 'px ' + look.font, textAlign: 'left', textVerticalAlign: 'middle', ...more },
@@ -177,12 +177,13 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
       const width = get_width(box);
       const letters = Math.floor((width - 6) / (0.62 * kSize));
       const lines = count_head_lines(scope);
-      const children = labels.map((label, p) =>
-        text(box.x + (p + 0.5) * width, box.y - 5, letters < kFewestLetters ? String(p + 1) : shorten(label, letters * lines), look.text, {
+      const heads = labels.map((label, p) => (letters < kFewestLetters ? String(p + 1) : shorten(label, letters * lines)));
+      const children = heads.map((label, p) =>
+        text(box.x + (p + 0.5) * width, box.y - 5, label, look.text, {
           textAlign: 'center',
           textVerticalAlign: 'bottom',
           width: width - 6,
-          overflow: 'break',
+          overflow: needs_more_lines(label, letters, lines) ? 'breakAll' : 'break',
           lineHeight: kHeadLine,
         }),
       );
@@ -207,7 +208,7 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
   }));
   const side = (direction: 'x' | 'y'): Part => ({ type: 'value', show: false, min: 0, max: direction === 'x' ? columns : order.length });
   return make_chart(look, side('x'), side('y'), [cells, heads].concat(key), {
-    grid: { left: name_width + 14, right: 4, top: kTop + get_head_height(scope), bottom: 4 },
+    grid: { left: name_width + 14, right: 4, top: kTop + get_head_height(scope), bottom: 4, narrow: { head: get_head_height(scope) + 5 } },
     legend: {
       type: 'scroll',
       left: 4,
@@ -225,8 +226,23 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
   });
 }
 
-function get_shown_marks({ standings }: Grid): Mark[] {
-  return kMarks.filter((mark) => standings.some((one) => one.standings.indexOf(mark.standing) >= 0));
+// Returns whether the label needs more lines if it only breaks between words.
+function needs_more_lines(label: string, letters: number, lines: number): boolean {
+  let count = 1;
+  let used = 0; // letters of the last line
+  for (const word of label.split(' ')) {
+    if (word.length > letters) {
+      return true;
+    }
+    const goes_on = used > 0 && used + 1 + word.length <= letters;
+    count += used > 0 && !goes_on ? 1 : 0;
+    used = goes_on ? used + 1 + word.length : word.length;
+  }
+  return count > lines;
+}
+
+function get_shown_marks({ standings, order }: Grid): Mark[] {
+  return kMarks.filter((mark) => standings.some((one) => order.some((o) => one.standings[o] === mark.standing)));
 }
 
 // Returns the number of lines for the names of problems: as many as they need in the usual width of
@@ -247,8 +263,8 @@ export function make_standing_grid(scope: Scope): Figure | null {
     return null;
   }
   const standings = scope.problems.map((problem) => find_standing(scope.data, problem));
-  const grid: Grid = { standings, order: order_by_standing(scope, standings) };
-  const row_height = scope.names.length > 16 ? 18 : 21;
+  const grid: Grid = { standings, order: order_by_standing(scope, standings).filter((o) => scope.shown.indexOf(o) >= 0) };
+  const row_height = scope.shown.length > 16 ? 18 : 21;
   return {
     kind: 'figure',
     id: 'standing',
@@ -260,7 +276,7 @@ export function make_standing_grid(scope: Scope): Figure | null {
       (scope.problems.length > kMostNamed ? 'In a narrow window the problems have numbers, in the order of the study. ' : '') +
       describe_size(scope),
     width: 'full',
-    height: kTop + get_head_height(scope) + row_height * scope.names.length + 4,
+    height: kTop + get_head_height(scope) + row_height * scope.shown.length + 4,
     draw: (look) => draw_grid(look, scope, grid),
     table: () => ({
       columns: [

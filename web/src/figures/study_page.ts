@@ -10,7 +10,7 @@ import { make_standing_grid } from './study_grid';
 import { make_headline } from './study_headline';
 import { make_pairs } from './study_pairs';
 import { make_scope, type Scope } from './study_parts';
-import { make_convergence, make_profiles, make_runtime_ecdf } from './study_progress';
+import { make_convergence, make_pooled_ecdf, make_profiles, make_runtime_ecdf } from './study_progress';
 import { make_overall_ranks, make_problem_ranks } from './study_ranks';
 import {
   make_cells_table,
@@ -52,8 +52,9 @@ function make_unfinished(data: StudyData): TextItem | null {
 }
 
 function make_verdict_items(data: StudyData, all: Scope): Item[] {
+  const everyone = make_scope(data, data.problems, '');
   const single = data.problems.length === 1;
-  const headline: TextItem = { kind: 'text', id: 'headline', title: 'Verdict', style: 'headline', paragraphs: [make_headline(all)] };
+  const headline: TextItem = { kind: 'text', id: 'headline', title: 'Verdict', style: 'headline', paragraphs: [make_headline(everyone)] };
   const verdict: TextItem = {
     kind: 'text',
     id: 'verdict',
@@ -90,14 +91,15 @@ function make_problem_items(scope: Scope): Item[] {
   ]);
 }
 
-export function make_study_tabs(data: StudyData): Tab[] {
-  const all = make_scope(data, data.problems, '');
+// `shown` are the optimizers of the figures and tables, by index; without it, all are shown.
+export function make_study_tabs(data: StudyData, shown?: number[]): Tab[] {
+  const all = make_scope(data, data.problems, '', shown);
   const tabs: Tab[] = [{ id: 'verdict', title: 'Verdict', items: make_verdict_items(data, all) }];
   const apart = data.problems.length <= kMostTabs;
   const slugs = make_slugs(data.problems.map((problem) => problem.label));
   const titles = shorten_all(data.problems.map((problem) => problem.label));
   const scopes = apart
-    ? data.problems.map((problem, i) => make_scope(data, [problem], data.problems.length > 1 ? '-' + slugs[i] : ''))
+    ? data.problems.map((problem, i) => make_scope(data, [problem], data.problems.length > 1 ? '-' + slugs[i] : '', shown))
     : [all];
   scopes.forEach((scope, i) =>
     tabs.push({
@@ -106,7 +108,7 @@ export function make_study_tabs(data: StudyData): Tab[] {
       items: make_problem_items(scope),
     }),
   );
-  const profiles = make_profiles(all);
+  const profiles = keep([make_pooled_ecdf(all), ...make_profiles(all)]);
   if (profiles.length > 0) {
     tabs.push({ id: 'profiles', title: 'Profiles', items: profiles });
   }

@@ -17,7 +17,7 @@ export function format_p(p: number): string {
 }
 
 // Returns blue if the row is better, orange if the column is better, and the background in between.
-function get_a12_color(look: Look, a12: number): string {
+export function get_a12_color(look: Look, a12: number): string {
   return a12 >= 0.5 ? mix(look.background, look.series[0], (a12 - 0.5) * 1.7) : mix(look.background, look.series[1], (0.5 - a12) * 1.7);
 }
 
@@ -25,13 +25,18 @@ export function find_pair(pairs: StudyPair[], a: number, b: number): StudyPair |
   return pairs.filter((pair) => (pair.a === a && pair.b === b) || (pair.a === b && pair.b === a))[0];
 }
 
-type Drawing = { value(dimension: number): number; coord(point: number[]): number[]; size(extent: number[]): number[] };
-interface Square {
+export interface Square {
   fill: string;
   text: string;
   marked: boolean;
 }
 
+// Returns the pairs of shown optimizers.
+function list_pairs(scope: Scope, problem: StudyProblem): StudyPair[] {
+  return problem.pairs.filter((pair) => scope.shown.indexOf(pair.a) >= 0 && scope.shown.indexOf(pair.b) >= 0);
+}
+
+type Drawing = { value(dimension: number): number; coord(point: number[]): number[]; size(extent: number[]): number[] };
 function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOption {
   const order = get_order(scope, problem);
   const names = order.map((o) => scope.names[o]);
@@ -39,7 +44,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
   order.forEach((o, i) => (place[o] = i));
   const squares: Square[] = [];
   const data: Part[] = [];
-  problem.pairs.forEach((pair) => {
+  list_pairs(scope, problem).forEach((pair) => {
     const first_is_a = place[pair.a] < place[pair.b];
     const [better, worse] = first_is_a ? [pair.a, pair.b] : [pair.b, pair.a];
     const a12 = first_is_a ? pair.a12 : 1 - pair.a12;
@@ -70,6 +75,19 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
       marked: pair.significant,
     });
   });
+  return draw_squares(look, names, names, data, squares, ['A12 = 1\nrow better', 'column better\nA12 = 0']);
+}
+
+// Draws one square per item of `data`, whose values are its column and its row, and the key of the
+// colours of A12. `ends` are the words at the ends of the key.
+export function draw_squares(
+  look: Look,
+  columns: string[],
+  rows: string[],
+  data: Part[],
+  squares: Square[],
+  ends: [string, string],
+): EChartsOption {
   const series: Part = {
     type: 'custom',
     name: 'pair',
@@ -115,27 +133,27 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
       return { type: 'group', children };
     },
   };
-  const width = Math.min(140, Math.max(30, Math.ceil(names.reduce((most, name) => Math.max(most, estimate_width(name, 11)), 0))));
-  const many = names.length > 20;
+  const measure = (names: string[]) =>
+    Math.min(140, Math.max(30, Math.ceil(6 + names.reduce((most, name) => Math.max(most, estimate_width(name, 11)), 0))));
+  const [width, foot] = [measure(rows), Math.min(110, measure(columns))];
   const make_side = (direction: 'x' | 'y'): Part => ({
-    ...make_axis(look, direction, '', { categories: names, inverse: direction === 'y' }),
+    ...make_axis(look, direction, '', { categories: direction === 'x' ? columns : rows, inverse: direction === 'y' }),
     name: undefined,
     axisTick: { show: false },
     axisLine: { show: false },
     axisLabel: {
       color: look.text,
       fontFamily: look.font,
-      fontSize: many ? 9 : 11,
+      fontSize: (direction === 'x' ? columns : rows).length > 20 ? 9 : 11,
       interval: 0,
       rotate: direction === 'x' ? 60 : 0,
-      width: direction === 'x' ? Math.min(width, 110) : width,
+      width: direction === 'x' ? foot : width,
       overflow: 'truncate',
     },
   });
   return make_chart(look, make_side('x'), make_side('y'), [series], {
-    grid: { left: width + 14, right: 92, top: 14, bottom: Math.min(width, 110) * 0.87 + 18 },
-    // This is only the key. The squares above have their own colours, and only the upper triangle
-    // uses this scale.
+    grid: { left: width + 14, right: 92, top: 14, bottom: foot * 0.87 + 18 },
+    // This is only the key: the squares have their own colours.
     visualMap: {
       type: 'continuous',
       seriesIndex: [],
@@ -148,7 +166,7 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
       top: 'middle',
       itemHeight: 110,
       itemWidth: 12,
-      text: ['A12 = 1\nrow better', 'column better\nA12 = 0'],
+      text: ends,
       textStyle: { color: look.muted, fontFamily: look.font, fontSize: 10, lineHeight: 13 },
       inRange: { color: [0, 0.25, 0.5, 0.75, 1].map((a12) => get_a12_color(look, a12)) },
     },
@@ -160,7 +178,7 @@ export function tabulate_pairs(scope: Scope, problems: StudyProblem[]): DataTabl
   const rows = problems.reduce(
     (all, problem) =>
       all.concat(
-        problem.pairs.map((pair) =>
+        list_pairs(scope, problem).map((pair) =>
           (many ? [problem.label as string | number] : []).concat([
             scope.names[pair.a],
             scope.names[pair.b],
@@ -205,8 +223,8 @@ export function make_pairs(all: Scope): Figure | null {
       'Values that are significant at 0.05 are bold and underlined. Rows and columns are ordered best first. ' +
       'A pair that is not told apart need not be equal: more replicates may show a difference. ' +
       describe_size(scope),
-    height: Math.max(380, 140 + 20 * scope.names.length),
-    width: scope.names.length > 8 ? 'full' : 'half',
+    height: Math.max(380, 140 + 20 * scope.shown.length),
+    width: scope.shown.length > 8 ? 'full' : 'half',
     choices: make_problem_choices(scope),
     draw: (look, picked) => draw_pairs(look, scope, get_problem(scope, picked)),
     table: (picked) => tabulate_pairs(scope, [get_problem(scope, picked)]),

@@ -54,19 +54,26 @@ export interface Scope {
   problems: StudyProblem[];
   suffix: string; // suffix of the ids
   names: string[]; // names of the optimizers, as drawn
+  shown: number[]; // the optimizers of figures and tables; ranks and tests are always those of all
   styles: number[]; // one per optimizer, for get_series_style
 }
 
-export function make_scope(data: StudyData, problems: StudyProblem[], suffix: string): Scope {
+// Returns the mean ranks over the problems or, if there are none, the places on the first problem.
+export function get_ranks(data: StudyData): number[] {
+  const order = data.problems[0]?.order ?? [];
+  const count = data.optimizers.length;
+  return data.overall ? data.overall.mean_ranks : data.optimizers.map((_, i) => (order.indexOf(i) < 0 ? count : order.indexOf(i)));
+}
+
+export function make_scope(data: StudyData, problems: StudyProblem[], suffix: string, shown?: number[]): Scope {
   const names = shorten_all(data.optimizers.map((one) => one.label));
   const styles = names.map((_, i) => i);
-  const order = data.problems[0]?.order ?? [];
-  const ranks = data.overall ? data.overall.mean_ranks : names.map((_, i) => (order.indexOf(i) < 0 ? names.length : order.indexOf(i)));
+  const ranks = get_ranks(data);
   if (names.length > kColours && ranks.length === names.length) {
     // The best optimizers get the colours that are easiest to distinguish.
     sort_by(styles, (i) => ranks[i]).forEach((optimizer, place) => (styles[optimizer] = place));
   }
-  return { data, problems, suffix, names, styles };
+  return { data, problems, suffix, names, shown: shown ?? names.map((_, i) => i), styles };
 }
 
 // Returns a sorted copy. Equal items keep their order.
@@ -76,9 +83,9 @@ export function sort_by<T>(items: T[], key: (item: T) => number): T[] {
   return keyed.map((one) => one.item);
 }
 
-// Returns the optimizers, best first. Those that the data do not rank come at the end.
+// Returns the shown optimizers, best first. Those that the data do not rank come at the end.
 export function get_order(scope: Scope, problem: StudyProblem): number[] {
-  const all = scope.names.map((_, i) => i).filter((i) => problem.results[i] !== undefined);
+  const all = scope.shown.filter((i) => problem.results[i] !== undefined);
   const ordered = problem.order.filter((i) => all.indexOf(i) >= 0);
   return ordered.concat(all.filter((i) => ordered.indexOf(i) < 0));
 }

@@ -2,6 +2,7 @@
 // problems.
 import type { EChartsOption } from '../charts/echarts';
 import type { Look } from '../charts/look';
+import { shorten_all } from '../charts/names';
 import { make_band, make_line, type Part, type Point } from '../charts/parts';
 import { make_grid_lines, make_scale, make_scaled_axis, type Scale } from '../charts/scales';
 import type { StudyProblem } from '../data';
@@ -17,6 +18,7 @@ import {
   get_order,
   get_picked,
   get_problem,
+  get_ranks,
   get_style,
   kMostAtFirst,
   make_problem_choices,
@@ -27,6 +29,9 @@ import {
   sort_by,
   split_rows,
 } from './study_parts';
+
+// With more curves the bands of the quartiles would hide each other.
+const kMostBands = 4;
 
 const kCasesAxis = 'simulated training cases';
 const kFirstOnes = (count: number) =>
@@ -42,7 +47,9 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
     return { q1: convert_all(curve.q1, unit), median: convert_all(curve.median, unit), q3: convert_all(curve.q3, unit) };
   });
   const drawn = curves.slice(0, kMostAtFirst);
-  const everything = (list: typeof curves) => list.reduce((all, one) => all.concat(one.q1, one.median, one.q3), [] as (number | null)[]);
+  const has_bands = order.length <= kMostBands;
+  const everything = (list: typeof curves) =>
+    list.reduce((all, one) => all.concat(one.median, has_bands ? one.q1.concat(one.q3) : []), [] as (number | null)[]);
   // The axis has room for all series that can be switched on.
   const y = make_scale(everything(curves.length > 2 * kMostAtFirst ? drawn : curves), true);
   const x = make_scale(problem.checkpoints, true);
@@ -57,7 +64,7 @@ function draw_convergence(look: Look, scope: Scope, problem: StudyProblem): ECha
       // A quartile without a value is beyond the end of the axis.
       return low === null ? null : [cases, low, q3[i] ?? y.high * 10];
     });
-    split_rows(rows).forEach((piece) => bands.push(make_band(scope.names[o], piece, style.color)));
+    split_rows(has_bands ? rows : []).forEach((piece) => bands.push(make_band(scope.names[o], piece, style.color)));
     const points = problem.checkpoints.map((cases, i): Point => {
       const value = median[i] ?? null;
       const note =
@@ -116,11 +123,14 @@ export function make_convergence(scope: Scope): Figure {
     id: 'convergence' + scope.suffix,
     title: end_title(scope, 'Convergence'),
     caption:
-      'The value of the incumbents on the test set against the number of simulated training cases. The line is the median over replicates, and the band shows the quartiles. ' +
+      'The value of the incumbents on the test set against the number of simulated training cases. The line is the median over replicates. ' +
+      (scope.shown.length <= kMostBands
+        ? 'The band shows the quartiles. '
+        : 'Bands of the quartiles are drawn for at most ' + kMostBands + ' optimizers; the table has the quartiles of all. ') +
       'Designs are chosen in training and simulated again on the test set, so a curve may rise. Where a curve is missing, half of the runs have no value yet. ' +
       'The order of the optimizers at one budget says nothing about another budget. ' +
       describe_size(scope) +
-      kFirstOnes(scope.names.length),
+      kFirstOnes(scope.shown.length),
     height: 400,
     choices: make_problem_choices(scope),
     draw: (look, picked) => draw_convergence(look, scope, get_problem(scope, picked)),
@@ -194,13 +204,18 @@ function tabulate_steps(scope: Scope, steps: Steps): DataTable {
   };
 }
 
+const kTargets =
+  'Targets lie between the start and the best known value: the optimum if it is known, else the best value that any optimizer of this study found. They are spaced evenly on a logarithmic scale of the remaining way to that value, and depend on the optimizers that take part. ' +
+  'A target counts as reached when all later incumbents reach it too. ';
+const kPairsAxis = 'share of (run, target) pairs reached';
+
 export function make_runtime_ecdf(scope: Scope): Figure {
   const get_steps = (picked: Picked): Steps => {
     const problem = get_problem(scope, picked);
     return {
       abscissae: problem.checkpoints,
       x_name: kCasesAxis,
-      y_name: 'share of (run, target) pairs reached',
+      y_name: kPairsAxis,
       shares: problem.results.map((one) => one.ecdf),
       order: get_order(scope, problem),
     };
@@ -211,16 +226,91 @@ export function make_runtime_ecdf(scope: Scope): Figure {
     title: end_title(scope, 'Targets reached over the budget'),
     caption:
       'The share of all pairs of a run and a target that are reached, against the number of simulated training cases. Curves that are higher and further left are better. ' +
-      'Targets lie between the start and the best known value: the optimum if it is known, else the best value that any optimizer of this study found. They are spaced evenly on a logarithmic scale of the remaining way to that value, and depend on the optimizers that take part. ' +
-      'A target counts as reached when all later incumbents reach it too. ' +
+      kTargets +
       describe_times(scope) +
       describe_size(scope) +
-      kFirstOnes(scope.names.length),
+      kFirstOnes(scope.shown.length),
     height: 400,
     choices: make_problem_choices(scope),
     draw: (look, picked) => draw_steps(look, scope, get_steps(picked)),
     table: (picked) => tabulate_steps(scope, get_steps(picked)),
   };
+}
+
+// Pools the (run, target) pairs of the problems. All runs of a problem have its targets, so a problem
+// counts as often as it has targets. Between two of its checkpoints its share stays the same.
+export function pool_ecdfs(problems: StudyProblem[]): { checkpoints: number[]; shares: number[][] } {
+  const all = problems.reduce((list, one) => list.concat(one.checkpoints), [] as number[]);
+  const checkpoints = sort_by(all, (at) => at).filter((at, i, sorted) => i === 0 || at !== sorted[i - 1]);
+  const pairs = problems.reduce((sum, one) => sum + one.targets.length, 0);
+  const optimizers = problems.length > 0 ? problems[0].results.map((_, o) => o) : [];
+  const shares = optimizers.map((o) => {
+    const places = problems.map(() => -1); // of the last checkpoint that is not beyond `at`
+    return checkpoints.map((at) => {
+      const reached = problems.map((one, p) => {
+        while (places[p] + 1 < one.checkpoints.length && one.checkpoints[places[p] + 1] <= at) {
+          ++places[p];
+        }
+        return (one.targets.length / pairs) * (places[p] < 0 ? 0 : (one.results[o].ecdf[places[p]] ?? 0));
+      });
+      return reached.reduce((sum, one) => sum + one, 0);
+    });
+  });
+  return { checkpoints, shares };
+}
+
+// The share of pairs over all problems whose runs have ended. Returns null if there is only one.
+export function make_pooled_ecdf(scope: Scope): Figure | null {
+  const problems = scope.problems.filter((problem) => problem.missing === 0 && problem.targets.length > 0);
+  if (problems.length < 2) {
+    return null;
+  }
+  const labels = shorten_all(problems.map((problem) => problem.label));
+  const choice: Choice = {
+    id: 'problem',
+    label: 'Problems',
+    options: [{ value: 'all', label: 'all ' + problems.length + ' problems' }].concat(
+      labels.map((label, i) => ({ value: String(i), label })),
+    ),
+    initial: 'all',
+  };
+  const get_steps = (picked: Picked): Steps => {
+    const value = get_picked(choice, picked);
+    const of = value === 'all' ? problems : [problems[Number(value)]];
+    const { checkpoints, shares } = pool_ecdfs(of);
+    return {
+      abscissae: checkpoints,
+      x_name: kCasesAxis,
+      y_name: kPairsAxis,
+      shares,
+      order: value === 'all' ? order_by_mean_rank(scope) : get_order(scope, of[0]),
+    };
+  };
+  return {
+    kind: 'figure',
+    id: 'pooled-ecdf',
+    title: 'Targets reached over all problems',
+    caption:
+      'The share of all (run, target) pairs of ' +
+      problems.length +
+      ' problems that are reached, against the number of simulated training cases. Curves that are higher and further left are better. ' +
+      kTargets +
+      'Each problem has its own targets, and their number is its weight. ' +
+      (problems.length < scope.problems.length ? 'Problems with missing runs are left out. ' : '') +
+      describe_times(scope) +
+      describe_size({ ...scope, problems }) +
+      kFirstOnes(scope.shown.length),
+    width: 'full',
+    height: 420,
+    choices: [choice],
+    draw: (look, picked) => draw_steps(look, scope, get_steps(picked)),
+    table: (picked) => tabulate_steps(scope, get_steps(picked)),
+  };
+}
+
+function order_by_mean_rank(scope: Scope): number[] {
+  const ranks = get_ranks(scope.data);
+  return sort_by(scope.shown, (i) => ranks[i] ?? Infinity);
 }
 
 // Returns the index of the tightest tolerance at which an optimizer solves half of the pairs, or of
@@ -250,11 +340,7 @@ function make_profile(
     options: profiles.map((one, i) => ({ value: String(i), label: format_number(one.tolerance, 1) })),
     initial: String(find_tightest(profiles)),
   };
-  const ranks = scope.data.overall ? scope.data.overall.mean_ranks : [];
-  const order = sort_by(
-    scope.names.map((_, i) => i),
-    (i) => ranks[i] ?? Infinity,
-  );
+  const order = order_by_mean_rank(scope);
   const get_steps = (picked: Picked): Steps => ({
     abscissae,
     x_name,
@@ -266,7 +352,7 @@ function make_profile(
     kind: 'figure',
     id,
     title,
-    caption: caption + ' ' + describe_size(scope) + kFirstOnes(scope.names.length),
+    caption: caption + ' ' + describe_size(scope) + kFirstOnes(scope.shown.length),
     height: 400,
     choices: [tolerance],
     draw: (look, picked) => draw_steps(look, scope, get_steps(picked)),

@@ -87,7 +87,7 @@ type Item = { dataIndex: number; coordSys: { x: number; y: number; width: number
 
 function draw_ranks(look: Look, scope: Scope, ranks: Ranks): EChartsOption {
   const order = sort_by(
-    scope.names.map((_, i) => i).filter((i) => isFinite(ranks.ranks[i])),
+    scope.shown.filter((i) => isFinite(ranks.ranks[i])),
     (i) => ranks.ranks[i],
   );
   const count = order.length;
@@ -204,7 +204,12 @@ function draw_ranks(look: Look, scope: Scope, ranks: Ranks): EChartsOption {
   });
 }
 
-function make_figure(scope: Scope, id: string, title: string, caption: string, get: (picked: Picked) => Ranks, all: Ranks[]): Figure {
+function make_figure(scope: Scope, id: string, title: string, caption: string, find: (picked: Picked) => Ranks, all: Ranks[]): Figure {
+  // Bars join shown optimizers only.
+  const get = (picked: Picked): Ranks => {
+    const ranks = find(picked);
+    return { ...ranks, cliques: ranks.cliques.map((clique) => clique.filter((o) => scope.shown.indexOf(o) >= 0)) };
+  };
   const levels = all.reduce((most, ranks) => Math.max(most, count_levels(ranks)), 0);
   return {
     kind: 'figure',
@@ -212,14 +217,11 @@ function make_figure(scope: Scope, id: string, title: string, caption: string, g
     title,
     caption,
     width: 'full',
-    height: Math.max(170, kAbove + 14 + levels * kBarHeight + Math.ceil(scope.names.length / 2) * kRowHeight + 20),
+    height: Math.max(170, kAbove + 14 + levels * kBarHeight + Math.ceil(scope.shown.length / 2) * kRowHeight + 20),
     draw: (look, picked) => draw_ranks(look, scope, get(picked)),
     table: (picked) => {
       const { ranks, intervals, cliques } = get(picked);
-      const order = sort_by(
-        scope.names.map((_, i) => i),
-        (i) => ranks[i],
-      );
+      const order = sort_by(scope.shown, (i) => ranks[i]);
       const groups = (i: number) =>
         cliques
           .map((clique, k) => (clique.indexOf(i) >= 0 ? String(k + 1) : ''))

@@ -1,6 +1,6 @@
 // The tables of a comparison.
 import { get_value } from '../csv';
-import type { StudyProblem } from '../data';
+import type { StudyOptimizerResult, StudyProblem } from '../data';
 import type { Cell, Column, DataTable, TableItem, Value } from '../model';
 import { convert, describe_size, end_title, get_curve_name, get_order, get_unit, type Scope, sort_by, type Unit } from './study_parts';
 import { tabulate_pairs } from './study_pairs';
@@ -36,6 +36,12 @@ function drop_empty_columns(table: DataTable, labels: string[]): DataTable {
 }
 
 const get_value_unit = (problem: StudyProblem) => get_unit(problem.quantity.unit);
+
+// The command of the best design's run makes the design again.
+function make_best_cell(value: number | null, replicate: number, result: StudyOptimizerResult): Cell {
+  const run = result.cells.filter((cell) => cell.replicate === replicate)[0];
+  return { value, note: `The best design is that of replicate ${replicate}.`, command: run?.command || undefined };
+}
 
 export function make_ranking_table(scope: Scope): TableItem {
   const columns = (unit: string): Column[] => [
@@ -76,7 +82,7 @@ export function make_ranking_table(scope: Scope): TableItem {
         one.failed,
         one.cases,
         check ? check.engine : null,
-        check ? { value: convert(check.value, unit), note: 'replicate ' + check.replicate } : null,
+        check ? make_best_cell(convert(check.value, unit), check.replicate, one) : null,
         check ? check.failures : null,
         one.successes,
       ];
@@ -131,7 +137,8 @@ export function make_cells_table(scope: Scope): TableItem {
     { label: 'value', unit, numeric: true },
     { label: 'cases', numeric: true, digits: 9 },
     { label: 'evaluations', numeric: true, digits: 9 },
-    { label: 'time', unit: 's', numeric: true },
+    { label: 'time taken', unit: 's', numeric: true },
+    { label: 'CPU time', unit: 's', numeric: true },
     { label: 'failed test cases', numeric: true, digits: 9 },
     { label: "optimizer's failure" },
     { label: 'folder' },
@@ -148,7 +155,8 @@ export function make_cells_table(scope: Scope): TableItem {
               { value, command: cell.command, note: value === null ? 'no value' : undefined },
               cell.cases,
               cell.evaluations,
-              cell.seconds,
+              cell.wall_s,
+              cell.cpu_s,
               cell.failures,
               cell.failure,
               cell.folder,
@@ -157,16 +165,16 @@ export function make_cells_table(scope: Scope): TableItem {
         ),
       [] as Row[],
     );
-  const has_times = scope.problems.some((problem) => problem.results.some((one) => one.cells.some((cell) => cell.seconds !== null)));
+  const has_times = scope.problems.some((problem) => problem.results.some((one) => one.cells.some((cell) => cell.wall_s !== null)));
   return {
     kind: 'table',
     id: 'cells' + scope.suffix,
     title: end_title(scope, 'Every run'),
     caption:
       'All runs that have ended, each with the command that makes it again, bit for bit. The value is that of the winner on the test set; a dash means that there is none. ' +
-      (has_times ? 'The times are not part of the comparison. ' : '') +
+      (has_times ? 'The times depend on the machine and are not part of the comparison. ' : '') +
       describe_size(scope),
-    table: drop_empty_columns(tabulate(scope, get_value_unit, columns, rows), ['time', "optimizer's failure"]),
+    table: drop_empty_columns(tabulate(scope, get_value_unit, columns, rows), ['time taken', 'CPU time', "optimizer's failure"]),
   };
 }
 
@@ -275,10 +283,7 @@ export function make_overall_table(scope: Scope): TableItem | null {
       digits: 4,
     })) as never[],
   );
-  const order = sort_by(
-    scope.names.map((_, i) => i),
-    (i) => overall.mean_ranks[i] ?? Infinity,
-  );
+  const order = sort_by(scope.shown, (i) => overall.mean_ranks[i] ?? Infinity);
   return {
     kind: 'table',
     id: 'overall',

@@ -192,8 +192,8 @@ export function make_values(scope: Scope): Figure {
         : '') +
       'Optimizers with overlapping boxes need not be equal: runs are paired by replicate, and the tests use these pairs. ' +
       describe_size(scope),
-    width: scope.names.length > 16 ? 'full' : 'half',
-    height: Math.max(320, 70 + 24 * scope.names.length),
+    width: scope.shown.length > 16 ? 'full' : 'half',
+    height: Math.max(320, 70 + 24 * scope.shown.length),
     choices: make_problem_choices(scope),
     draw: (look, picked) => draw_values(look, scope, get_problem(scope, picked)),
     table,

@@ -38,7 +38,7 @@ export function make_sweep_figure(sweep: Sweep, id = 'speed-sweep', thesis = '')
             `${sweep.parameter} = ${format_number(x)}: mean ${format_number(times(one.mean_m[i], kMillimetres))} mm, ` +
             `median ${format_number(times(one.median_m[i], kMillimetres))} mm, ${count_of(one.failures[i] ?? 0, 'failure')}.`,
         }));
-        series.push(make_line(look, s, names[s], points, { symbols: true }));
+        series.push(make_line(look, s, names[s], points, { symbols: true, on_top: s === 0 }));
         const failed = points.filter((_, i) => one.failures[i] > 0);
         if (failed.length > 0) {
           series.push({

@@ -5,6 +5,7 @@ import { make_line, type Part, type Point } from '../charts/parts';
 import type { RunData } from '../data';
 import type { DataTable, Figure, Value } from '../model';
 import { format_number } from '../numbers';
+import { make_scale_choice } from './distance_response';
 import { are_positive, count_of, flatten, get_shown, is_number, name_axis, times } from './quantities';
 
 const kBest = 'best';
@@ -23,6 +24,8 @@ export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
   const { incumbents } = training;
   const shown = get_shown(data.quantity);
   const unit = name_progress(data);
+  const values = flatten([training.best, training.mean, incumbents.test]).map((value) => times(value, shown.factor));
+  const has_log = !data.logarithmic && are_positive(values);
   const of_it = training.unit === 'generation' ? 'the generation' : 'the block of evaluations';
   return {
     kind: 'figure',
@@ -52,13 +55,13 @@ export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
         ],
         initial: 'index',
       },
+      ...(has_log ? [make_scale_choice('log')] : []),
     ],
     draw: (look, picked) => {
       const by_cases = picked.abscissa === 'cases';
       const x = by_cases ? training.cases : training.index;
       const x_incumbents = by_cases ? incumbents.cases : incumbents.index;
-      const values = flatten([training.best, training.mean, incumbents.test]).map((value) => times(value, shown.factor));
-      const log = !data.logarithmic && are_positive(values);
+      const log = has_log && picked.scale !== 'linear';
       const line = (values: (number | null)[]): Point[] => values.map((value, i) => [x[i], times(value, shown.factor)]);
       const tests: Point[] = incumbents.test.map((value, i) => ({
         value: [x_incumbents[i], times(value, shown.factor)],

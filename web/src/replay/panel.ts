@@ -2,6 +2,7 @@
 import { make } from '../app/dom';
 import { format_number, kDegrees, kMillimetres } from '../numbers';
 import { list_decades, to_css, type ColourScale } from './colours';
+import { describe_share, find_colour_of, list_paints, type Paint } from './load';
 import { find_error, type Scenario, type Track } from './scenario';
 import { kGhost } from './stage';
 import { describe_end, is_measured } from './timeline';
@@ -11,28 +12,40 @@ export interface Shown {
   scenario: Scenario;
   track: Track | null;
   ghost: Track | null;
+  paint: Paint;
+}
+
+function make_swatch(colour: string): HTMLElement {
+  const mark = make('span', { class: 'replay-swatch' });
+  mark.style.background = colour;
+  return mark;
 }
 
 class Row {
   readonly element: HTMLElement;
   private readonly value = make('dd');
+  private readonly swatch: HTMLElement | null;
 
-  constructor(label: string, swatch = '') {
-    const name = make('dt', {}, label);
-    if (swatch !== '') {
-      const mark = make('span', { class: 'replay-swatch' });
-      mark.style.background = swatch;
-      name.prepend(mark);
-    }
-    this.element = make('div', {}, name, this.value);
+  constructor(label: string, colour = '') {
+    this.swatch = colour === '' ? null : make_swatch(colour);
+    this.element = make('div', {}, make('dt', {}, this.swatch, label), this.value);
   }
 
-  set(text: string): void {
+  set(text: string, colour = ''): void {
     if (this.value.textContent !== text) {
       this.value.textContent = text;
     }
+    if (this.swatch !== null && colour !== '') {
+      this.swatch.style.background = colour;
+    }
   }
 }
+
+const kPaintTitles: Record<Paint, string> = {
+  robot: '',
+  torque: 'Link: the torque of its joint, as a share of the limit',
+  position: 'Link: the position of its joint, from the middle of its range (0 %) to an end (100 %)',
+};
 
 function format_error(track: Track, moment: number): string {
   const error = find_error(track, moment);
@@ -44,10 +57,12 @@ export class Panel {
   private readonly end = make('p', { class: 'replay-end', role: 'status' });
   private rows: { time: Row; point: Row; distance: Row; measured: Row; errors: [Track, Row][]; joints: Row[] } | null = null;
   private shown: Shown | null = null;
+  private look: Look | null = null;
 
   set(shown: Shown, scale: ColourScale, look: Look): void {
     this.shown = shown;
-    const { scenario, track, ghost } = shown;
+    const { scenario, track, ghost, paint } = shown;
+    this.look = look;
     const errors: [Track, Row][] = [];
     if (track !== null) {
       errors.push([track, new Row(`Error, ${track.name}`)]);
@@ -55,7 +70,7 @@ export class Panel {
     if (ghost !== null) {
       errors.push([ghost, new Row(`Error, ${ghost.name} (ghost)`, kGhost)]);
     }
-    const joints = scenario.chain.robot.joints.map((joint) => new Row(joint.name));
+    const joints = scenario.chain.robot.joints.map((joint) => new Row(joint.name, paint === 'robot' ? '' : look.muted));
     this.rows = {
       time: new Row('Time'),
       point: new Row('Point', look.bad),
@@ -74,11 +89,12 @@ export class Panel {
     );
   }
 
-  show(moment: number, segment: number, q: number[]): void {
-    if (this.rows === null || this.shown === null) {
+  // `shares` has one share per joint if the links are painted.
+  show(moment: number, segment: number, q: number[], shares: (number | null)[] | null): void {
+    if (this.rows === null || this.shown === null || this.look === null) {
       return;
     }
-    const { scenario, track, ghost } = this.shown;
+    const { scenario, track, ghost, paint } = this.shown;
     const { segments } = scenario.replay;
     const here = segments[segment];
     this.rows.time.set(`${(moment * scenario.period_s).toFixed(2)} of ${(scenario.moments * scenario.period_s).toFixed(2)} s`);
@@ -88,9 +104,14 @@ export class Panel {
     for (const [one, row] of this.rows.errors) {
       row.set(format_error(one, moment));
     }
+    const { look } = this;
     this.rows.joints.forEach((row, i) => {
       const revolute = scenario.chain.robot.joints[i].kind === 'revolute';
-      row.set(revolute ? `${(q[i] * kDegrees).toFixed(2)}°` : `${(q[i] * kMillimetres).toFixed(2)} mm`);
+      const position = revolute ? `${(q[i] * kDegrees).toFixed(2)}°` : `${(q[i] * kMillimetres).toFixed(2)} mm`;
+      row.set(
+        shares === null ? position : `${position}, ${describe_share(shares[i])}`,
+        shares === null ? '' : find_colour_of(shares[i], look, paint),
+      );
     });
     const ends = [track, ghost]
       .map((one) => (one === null ? '' : describe_end(one.motion, scenario.replay, moment, scenario.period_s)))
@@ -106,15 +127,21 @@ export class Panel {
     bar.style.background = `linear-gradient(to right, ${scale.stops.map(to_css).join(', ')})`;
     const ticks = make('div', { class: 'replay-ticks' });
     list_decades(scale).forEach((decade) => ticks.append(make('span', {}, format_number(decade * kMillimetres, 1))));
-    const target = make('span', { class: 'replay-swatch' });
-    target.style.background = look.text;
+    const paint = this.shown?.paint ?? 'robot';
+    const paints = [...list_paints(look, paint), { colour: look.muted, label: 'no limit, no number' }];
     return make(
       'div',
       { class: 'replay-legend' },
+      ...(paint === 'robot'
+        ? []
+        : [
+            make('div', {}, kPaintTitles[paint]),
+            make('div', { class: 'replay-paints' }, ...paints.map((one) => make('span', {}, make_swatch(one.colour), one.label))),
+          ]),
       make('div', {}, 'Error along the path of the tip (mm)'),
       bar,
       ticks,
-      make('div', {}, target, 'target'),
+      make('div', {}, make_swatch(look.text), 'target'),
       make('div', {}, 'squares of the ground: 0.5 m'),
     );
   }

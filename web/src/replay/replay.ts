@@ -4,6 +4,7 @@ import { make, make_button } from '../app/dom';
 import type { Look } from '../charts/look';
 import type { ReplayCase, ReplaySet, Robot } from '../data';
 import { make_colour_scale, type ColourScale } from './colours';
+import { find_colour_of, find_shares, type Paint } from './load';
 import { Panel } from './panel';
 import { Picker } from './picker';
 import { find_q, find_target, make_scenario, type Scenario, type Track } from './scenario';
@@ -29,6 +30,7 @@ export interface ReplayState {
 export interface ReplayView {
   set_time(time_s: number): void; // within the case that is shown; does not call on_time
   choose(set: string, case_id: string): void; // does nothing if the set or case does not exist
+  set_pointer(time_s: number | null): void; // marks a time that the reader points at; null: none
   set_look(look: Look): void;
   dispose(): void;
   readonly state: ReplayState;
@@ -37,6 +39,8 @@ export interface ReplayView {
 export interface ReplayEvents {
   // Called when the reader, or playing, has changed the time or the case.
   on_time?(set: string, case_id: string, time_s: number): void;
+  // Called when the reader points at a time, and with null when the pointer has left.
+  on_point?(set: string, case_id: string, time_s: number | null): void;
 }
 
 const kSpeeds = ['0.1', '0.25', '0.5', '1', '2', '4'];
@@ -63,6 +67,7 @@ class Replay implements ReplayView {
   private readonly ghost_picker = new Picker('Ghost', (id) => this.pick_designs(this.state.design, id));
   private readonly speed_picker = new Picker('Speed', () => this.schedule());
   private readonly trace_picker = new Picker('Path', () => this.schedule());
+  private readonly paint_picker = new Picker('Arm', () => this.apply());
   private readonly play_button = make_button('Play', () => this.set_playing(!this.state.playing), { class: 'replay-play' });
   private readonly scrub = make('input', { type: 'range', min: '0', step: '1', 'aria-label': 'Time', class: 'replay-scrub' });
   private readonly observer = new ResizeObserver(() => this.resize());
@@ -89,7 +94,10 @@ class Replay implements ReplayView {
     this.events = events;
     this.scale = make_colour_scale([], look.theme);
     this.stage = make_stage(() => this.schedule());
-    this.strip = new Strip((moment) => this.seek(moment));
+    this.strip = new Strip(
+      (moment) => this.seek(moment),
+      (moment) => this.point(moment),
+    );
     this.state = {
       set: '',
       case: '',
@@ -130,6 +138,10 @@ class Replay implements ReplayView {
     }
   }
 
+  set_pointer(time_s: number | null): void {
+    this.strip.set_pointer(time_s === null || this.scenario === null ? null : time_s / this.scenario.period_s);
+  }
+
   set_look(look: Look): void {
     this.look = look;
     this.apply();
@@ -154,6 +166,12 @@ class Replay implements ReplayView {
       { value: 'whole', label: 'of the whole motion' },
     ];
     this.trace_picker.set(traces, 'past');
+    const paints: { value: Paint; label: string }[] = [
+      { value: 'robot', label: 'in its own colours' },
+      { value: 'torque', label: 'coloured by torque' },
+      { value: 'position', label: 'coloured by joint limits' },
+    ];
+    this.paint_picker.set(paints, 'robot');
     const view = (label: string, choice: ViewChoice): HTMLElement => make_button(label, () => this.stage.set_view(choice));
     this.scrub.addEventListener('input', () => this.seek(Number(this.scrub.value)));
     this.root.addEventListener('keydown', (event) => this.handle_key(event));
@@ -161,13 +179,16 @@ class Replay implements ReplayView {
       make(
         'div',
         { class: 'replay-choices' },
-        ...[this.set_picker, this.case_picker, this.design_picker, this.ghost_picker, this.trace_picker].map((picker) => picker.element),
+        ...[this.set_picker, this.case_picker, this.design_picker, this.ghost_picker, this.paint_picker, this.trace_picker].map(
+          (picker) => picker.element,
+        ),
         make(
           'span',
           { class: 'replay-views', role: 'group', 'aria-label': 'View' },
           view('Perspective', 'perspective'),
           view('Side', 'side'),
           view('Front', 'front'),
+          view('Top', 'top'),
         ),
       ),
       make(
@@ -180,16 +201,15 @@ class Replay implements ReplayView {
           this.play_button,
           make_button('Previous point', () => this.go_to_point(-1)),
           make_button('Next point', () => this.go_to_point(1)),
-          this.scrub,
           this.speed_picker.element,
         ),
-        this.strip.element,
+        make('div', { class: 'replay-times' }, this.scrub, this.strip.element),
         this.panel.element,
       ),
       make(
         'p',
         { class: 'replay-hint' },
-        'The strip below the arm shows the error over the whole test case. In shaded times the error is measured. Click into the strip to go to a time. ' +
+        'The strip below the slider shows the error over the whole test case. In shaded times the error is measured. Click into the strip to go to a time. ' +
           'The space bar plays and pauses, the arrow keys step (ten steps with Shift), and Home and End go to the ends. ' +
           'Drag to turn the view, use the wheel to zoom and the right button to move the view.',
       ),
@@ -262,7 +282,7 @@ class Replay implements ReplayView {
       look.theme,
     );
     this.stage.set_setting({ scenario, track: this.track, ghost: this.ghost, scale: this.scale, look });
-    this.panel.set({ scenario, track: this.track, ghost: this.ghost }, this.scale, look);
+    this.panel.set({ scenario, track: this.track, ghost: this.ghost, paint: this.paint_picker.value as Paint }, this.scale, look);
     this.draw_strip();
     this.schedule();
   }
@@ -284,6 +304,11 @@ class Replay implements ReplayView {
 
   private tell(): void {
     this.events.on_time?.(this.state.set, this.state.case, this.state.time_s);
+  }
+
+  private point(moment: number | null): void {
+    const time_s = moment === null || this.scenario === null ? null : moment * this.scenario.period_s;
+    this.events.on_point?.(this.state.set, this.state.case, time_s);
   }
 
   private seek(moment: number): void {
@@ -390,6 +415,8 @@ class Replay implements ReplayView {
     const moment = state.time_s / scenario.period_s;
     const segment = find_segment(scenario.replay.segments, state.step);
     const q = track === null ? scenario.replay.start_q : find_q(scenario, track, moment);
+    const paint = this.paint_picker.value as Paint;
+    const shares = paint === 'robot' ? null : find_shares(scenario, track, state.step, q, paint);
     this.stage.show({
       moment: Math.max(moment, state.step),
       q,
@@ -397,9 +424,10 @@ class Replay implements ReplayView {
       target_m: find_target(scenario, moment),
       segment,
       trace: this.trace_picker.value as TraceChoice,
+      paints: shares === null ? null : shares.map((share) => find_colour_of(share, this.look, paint)),
     });
     this.strip.set_cursor(moment);
-    this.panel.show(state.step, segment, q);
+    this.panel.show(state.step, segment, q, shares);
     const text = String(state.step);
     if (this.scrub.value !== text) {
       this.scrub.value = text;

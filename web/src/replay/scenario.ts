@@ -1,6 +1,6 @@
 // A test case that is ready to be shown: its packed numbers are unpacked, and the paths of the tips
 // are computed. This file does not use the DOM.
-import type { Motion, ReplayCase, ReplaySet, Robot } from '../data';
+import type { DesignInfo, Motion, ReplayCase, ReplaySet, Robot } from '../data';
 import { unpack } from '../numbers';
 import { calc_tip, make_chain, type Chain } from './chain';
 import { clamp, interpolate_row } from './timeline';
@@ -12,6 +12,8 @@ export interface Track {
   q: Float32Array;
   errors_m: Float32Array; // one per moment; the first is that of the start
   tip_m: Float32Array; // 3 per moment
+  effort: Float32Array; // one row of joints per row of q
+  limits: [number | null, number | null][]; // of the efforts, one per joint
 }
 
 export interface Scenario {
@@ -23,7 +25,7 @@ export interface Scenario {
   tracks: Track[];
 }
 
-function make_track(motion: Motion, name: string, replay: ReplayCase, chain: Chain): Track {
+function make_track(motion: Motion, design: DesignInfo | undefined, replay: ReplayCase, chain: Chain): Track {
   const width = chain.robot.joints.length;
   const q = unpack(motion.q);
   const errors = unpack(motion.error_m);
@@ -37,19 +39,22 @@ function make_track(motion: Motion, name: string, replay: ReplayCase, chain: Cha
     tip_m.set(calc_tip(chain, q, width * k), 3 * (k + 1));
     errors_m[k + 1] = errors[k];
   }
-  return { motion, name, count, q, errors_m, tip_m };
+  const limits = design?.effort_limits ?? [];
+  return { motion, name: design?.name ?? motion.design, count, q, errors_m, tip_m, effort: unpack(motion.effort), limits };
 }
 
 export function make_scenario(set: ReplaySet, replay: ReplayCase, robot: Robot): Scenario {
   const chain = make_chain(robot);
-  const names = new Map(set.designs.map((design) => [design.id, design.name]));
   return {
     replay,
     chain,
     period_s: set.task.control_period_s,
     moments: replay.steps,
     target_m: unpack(replay.target_m),
-    tracks: replay.motions.map((motion) => make_track(motion, names.get(motion.design) ?? motion.design, replay, chain)),
+    tracks: replay.motions.map((motion) => {
+      const design = set.designs.find((one) => one.id === motion.design);
+      return make_track(motion, design, replay, chain);
+    }),
   };
 }
 

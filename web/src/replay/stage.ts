@@ -1,11 +1,11 @@
 // The interface of the parts that draw the arm: in three dimensions if the browser can, otherwise
-// from the side.
+// in lines.
 import type { Look } from '../charts/look';
 import type { ColourScale } from './colours';
 import type { Scenario, Track } from './scenario';
 
 export type TraceChoice = 'past' | 'move' | 'whole';
-export type ViewChoice = 'perspective' | 'side' | 'front';
+export type ViewChoice = 'perspective' | 'side' | 'front' | 'top';
 
 // The data that do not change with the time.
 export interface Setting {
@@ -24,6 +24,7 @@ export interface Snapshot {
   target_m: [number, number, number];
   segment: number;
   trace: TraceChoice;
+  paints: string[] | null; // the colour of the link that each joint moves; null: the colours of the robot
 }
 
 export interface Stage {

@@ -1,4 +1,4 @@
-// Draws the arm from the side or the front, in lines, for browsers without WebGL.
+// Draws the arm from the side, the front or above, in lines, for browsers without WebGL.
 import { make } from '../app/dom';
 import { calc_frames, find_position, multiply } from './chain';
 import { find_colour, to_css } from './colours';
@@ -11,11 +11,11 @@ export class Stage2d implements Stage {
   private readonly canvas = make('canvas', { role: 'img' });
   private setting: Setting | null = null;
   private size = { width: 1, height: 1, ratio: 1 };
-  private from_front = false;
+  private view: ViewChoice = 'side';
   private place: (point: Point) => [number, number] = () => [0, 0];
 
   constructor(private readonly on_change: () => void) {
-    const message = 'This browser has no 3D graphics (WebGL), so the arm is drawn in lines, from the side or from the front.';
+    const message = 'This browser has no 3D graphics (WebGL), so the arm is drawn in lines, from the side, the front or above.';
     this.element = make('div', { class: 'replay-stage' }, this.canvas, make('p', { class: 'replay-message' }, message));
   }
 
@@ -37,15 +37,17 @@ export class Stage2d implements Stage {
     context.fillStyle = look.background;
     context.fillRect(0, 0, this.size.width, this.size.height);
     context.lineCap = context.lineJoin = 'round';
-    this.draw_line(
-      context,
-      [
-        [-9, -9, 0],
-        [9, 9, 0],
-      ],
-      look.muted,
-      1,
-    );
+    if (this.view !== 'top') {
+      this.draw_line(
+        context,
+        [
+          [-9, -9, 0],
+          [9, 9, 0],
+        ],
+        look.muted,
+        1,
+      );
+    }
     this.draw_line(context, scenario.replay.points_m, look.grid, 1);
     scenario.replay.points_m.forEach((point, i) => {
       this.draw_dot(context, point, i === snapshot.segment + 1 ? look.bad : look.muted, i === snapshot.segment + 1 ? 5 : 3);
@@ -65,14 +67,14 @@ export class Stage2d implements Stage {
       this.draw_trace(context, one.tip_m, parts.now, colour);
     }
     if (snapshot.ghost_q !== null) {
-      this.draw_arm(context, snapshot.ghost_q, kGhost, 5);
+      this.draw_arm(context, snapshot.ghost_q, () => kGhost, 5);
     }
-    this.draw_arm(context, snapshot.q, look.muted, 4);
+    this.draw_arm(context, snapshot.q, (body) => snapshot.paints?.[body - 1] ?? look.muted, 4);
     this.draw_dot(context, snapshot.target_m, look.text, 6);
   }
 
   set_view(view: ViewChoice): void {
-    this.from_front = view === 'front';
+    this.view = view;
     this.fit();
     this.on_change();
   }
@@ -95,17 +97,18 @@ export class Stage2d implements Stage {
       return;
     }
     const { chain, replay } = this.setting.scenario;
-    const across = (point: Point): number => (this.from_front ? point[1] : point[0]);
+    const across = (point: Point): number => (this.view === 'front' ? point[1] : point[0]);
+    const up = (point: Point): number => (this.view === 'top' ? point[1] : point[2]);
     const points: Point[] = [[0, 0, 0], ...replay.points_m, ...calc_frames(chain, replay.start_q).map(find_position)];
     const x = points.map(across);
-    const z = points.map((point) => point[2]);
+    const z = points.map(up);
     const [left, right] = [Math.min(...x) - 0.3, Math.max(...x) + 0.3];
     const [bottom, top] = [Math.min(...z) - 0.1, Math.max(...z) + 0.3];
     const { width, height } = this.size;
     const factor = Math.min(width / (right - left), height / (top - bottom));
     this.place = (point) => [
       width / 2 + (across(point) - (left + right) / 2) * factor,
-      height / 2 - (point[2] - (bottom + top) / 2) * factor,
+      height / 2 - (up(point) - (bottom + top) / 2) * factor,
     ];
   }
 
@@ -131,7 +134,8 @@ export class Stage2d implements Stage {
     }
   }
 
-  private draw_arm(context: CanvasRenderingContext2D, q: number[], colour: string, width: number): void {
+  // `colour` gives the colour of each body; the base has the index 0.
+  private draw_arm(context: CanvasRenderingContext2D, q: number[], colour: (body: number) => string, width: number): void {
     if (this.setting === null) {
       return;
     }
@@ -139,7 +143,7 @@ export class Stage2d implements Stage {
     const frames = calc_frames(chain, q);
     const points = frames.map(find_position);
     points.push(find_position(multiply(frames[frames.length - 1], chain.tip)));
-    this.draw_line(context, points, colour, width);
-    points.forEach((point) => this.draw_dot(context, point, colour, width));
+    points.slice(1).forEach((point, body) => this.draw_line(context, [points[body], point], colour(body), width));
+    points.forEach((point, i) => this.draw_dot(context, point, colour(Math.min(i, frames.length - 1)), width));
   }
 }

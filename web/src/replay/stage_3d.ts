@@ -9,7 +9,6 @@ import {
   HemisphereLight,
   Mesh,
   MeshLambertMaterial,
-  Object3D,
   PerspectiveCamera,
   Scene,
   Sphere,
@@ -29,6 +28,7 @@ const kDirections: Record<ViewChoice, [number, number, number]> = {
   perspective: [1, -1.35, 0.62],
   side: [0, -1, 0.02], // the arm points to the right, as in Fig. 6.2 of the thesis
   front: [1, 0, 0.02],
+  top: [0, -0.002, 1], // the arm points to the right
 };
 
 const kMovingShare = 0.7; // share of the pixels in each direction while the processor draws a moving picture
@@ -51,7 +51,8 @@ function is_drawn_by_processor(): boolean {
 
 class Arm {
   readonly group = new Group();
-  private readonly bodies: Object3D[];
+  private readonly bodies: Mesh[];
+  private readonly paints: MeshLambertMaterial[]; // one per body
 
   constructor(
     geometries: BufferGeometry[],
@@ -63,17 +64,23 @@ class Arm {
       this.group.add(body);
       return body;
     });
+    this.paints = geometries.map(() => new MeshLambertMaterial());
   }
 
-  show(frames: Frame[]): void {
+  // `paints` has the colour of each body after the base. null: the colours of the robot.
+  show(frames: Frame[], paints: string[] | null): void {
     this.bodies.forEach((body, i) => {
+      body.material = paints === null || i === 0 ? this.material : this.paints[i];
+      if (paints !== null && i > 0) {
+        this.paints[i].color.set(paints[i - 1]);
+      }
       to_matrix(frames[i], body.matrix);
       body.matrixWorldNeedsUpdate = true;
     });
   }
 
   dispose(): void {
-    this.material.dispose();
+    [this.material, ...this.paints].forEach((material) => material.dispose());
     this.group.removeFromParent();
   }
 }
@@ -157,9 +164,9 @@ export class Stage3d implements Stage {
       return;
     }
     const { chain, replay } = setting.scenario;
-    this.arm?.show(calc_frames(chain, snapshot.q));
+    this.arm?.show(calc_frames(chain, snapshot.q), snapshot.paints);
     if (this.ghost !== null && snapshot.ghost_q !== null) {
-      this.ghost.show(calc_frames(chain, snapshot.ghost_q));
+      this.ghost.show(calc_frames(chain, snapshot.ghost_q), null);
     }
     this.still.target.position.set(...snapshot.target_m);
     this.still.points.show(snapshot.segment + 1);

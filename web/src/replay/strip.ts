@@ -1,5 +1,5 @@
-// The error over the time of the whole test case, under the view. It shows where something happens,
-// and a click goes to that time.
+// The error over the time of the whole test case, under the slider, which has the same time axis. It
+// shows where something happens, and a click goes to that time.
 import { make } from '../app/dom';
 import type { Look } from '../charts/look';
 import { format_number } from '../numbers';
@@ -8,7 +8,7 @@ import type { Scenario, Track } from './scenario';
 import { kGhost } from './stage';
 import { clamp } from './timeline';
 
-const kLeft = 62;
+const kLeft = 62; // px; replay.css places the slider between the same ends
 const kRight = 12;
 const kTop = 6;
 const kBottom = 20;
@@ -18,11 +18,16 @@ export class Strip {
   readonly element: HTMLElement;
   private readonly canvas = make('canvas', { role: 'img' });
   private readonly cursor = make('div', { class: 'replay-cursor' });
+  private readonly pointer = make('div', { class: 'replay-pointer', hidden: '' });
   private width = 0;
   private moments = 1;
 
-  constructor(private readonly on_seek: (moment: number) => void) {
-    this.element = make('div', { class: 'replay-strip' }, this.canvas, this.cursor);
+  // `on_point` gets the moment under a mouse, which may have a fraction, or null when it has left.
+  constructor(
+    private readonly on_seek: (moment: number) => void,
+    on_point: (moment: number | null) => void,
+  ) {
+    this.element = make('div', { class: 'replay-strip' }, this.canvas, this.cursor, this.pointer);
     this.canvas.addEventListener('pointerdown', (event) => {
       this.canvas.setPointerCapture(event.pointerId);
       this.seek(event);
@@ -31,12 +36,20 @@ export class Strip {
       if (event.buttons !== 0) {
         this.seek(event);
       }
+      if (event.pointerType === 'mouse') {
+        on_point(this.find_moment(event));
+      }
     });
+    this.canvas.addEventListener('pointerleave', () => on_point(null));
   }
 
   set_cursor(moment: number): void {
-    const x = kLeft + (moment / this.moments) * Math.max(0, this.width - kLeft - kRight);
-    this.cursor.style.transform = `translateX(${x.toFixed(1)}px)`;
+    this.cursor.style.transform = `translateX(${this.find_x(moment).toFixed(1)}px)`;
+  }
+
+  set_pointer(moment: number | null): void {
+    this.pointer.hidden = moment === null;
+    this.pointer.style.transform = `translateX(${this.find_x(moment ?? 0).toFixed(1)}px)`;
   }
 
   draw(width: number, scenario: Scenario, tracks: { main: Track | null; ghost: Track | null }, scale: ColourScale, look: Look): void {
@@ -68,12 +81,16 @@ export class Strip {
   }
 
   private seek(event: PointerEvent): void {
+    this.on_seek(Math.round(this.find_moment(event)));
+  }
+
+  private find_moment(event: PointerEvent): number {
     const share = (event.offsetX - kLeft) / Math.max(1, this.width - kLeft - kRight);
-    this.on_seek(Math.round(clamp(share, 0, 1) * this.moments));
+    return clamp(share, 0, 1) * this.moments;
   }
 
   private find_x(moment: number): number {
-    return kLeft + (moment / this.moments) * (this.width - kLeft - kRight);
+    return kLeft + (moment / this.moments) * Math.max(0, this.width - kLeft - kRight);
   }
 
   private find_y(scale: ColourScale, error_m: number): number {

@@ -1,0 +1,134 @@
+// The gestures over the panels of a chart: pointing, dragging over a range, and a double click. A
+// finger only points, so that it can scroll the page.
+import type { EChartsType } from '../charts/echarts';
+import type { Range } from '../charts/zoom';
+import { make } from './dom';
+
+export interface Rect {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
+
+export interface GestureEvents {
+  on_point(panel: number, x: number): void;
+  on_leave(): void;
+  on_range(panel: number, range: Range): void;
+  on_reset(): void; // a double click in a panel
+}
+
+const kShortestDrag_px = 6; // a shorter one is a click
+
+// Returns the place of a panel in its chart. The public functions of ECharts do not give it.
+export function find_panel(chart: EChartsType, panel: number): Rect {
+  type Model = { getComponent(kind: string, index: number): { coordinateSystem: { getRect(): Rect } } };
+  return (chart as unknown as { getModel(): Model }).getModel().getComponent('grid', panel).coordinateSystem.getRect();
+}
+
+// Returns the band that marks the dragged range. It belongs over the chart in `plot`.
+export function add_gestures(
+  plot: HTMLElement,
+  get_chart: () => EChartsType | null,
+  count: () => number,
+  events: GestureEvents,
+): HTMLElement {
+  const band = make('div', { class: 'zoom-band', hidden: '', 'aria-hidden': 'true' });
+  let drag: { panel: number; from_px: number; is_long: boolean } | null = null;
+
+  const get_place = (event: MouseEvent): [number, number] => {
+    const { left, top } = plot.getBoundingClientRect();
+    return [event.clientX - left, event.clientY - top];
+  };
+  const find_at = (chart: EChartsType, place: [number, number]): number => {
+    for (let i = 0; i < count(); ++i) {
+      if (chart.containPixel({ gridIndex: i }, place)) {
+        return i;
+      }
+    }
+    return -1;
+  };
+  const read = (chart: EChartsType, panel: number, x_px: number): number => chart.convertFromPixel({ xAxisIndex: panel }, x_px) as number;
+  const end_drag = (): void => {
+    drag = null;
+    band.hidden = true;
+  };
+  // Returns the ends of the drag within its panel, in pixels.
+  const find_ends = (chart: EChartsType, x_px: number): [number, number] => {
+    const { x, width } = find_panel(chart, drag?.panel ?? 0);
+    const to_px = Math.min(x + width, Math.max(x, x_px));
+    const from_px = drag?.from_px ?? to_px;
+    return [Math.min(from_px, to_px), Math.max(from_px, to_px)];
+  };
+
+  const point = (event: MouseEvent): void => {
+    const chart = get_chart();
+    const place = get_place(event);
+    const panel = chart === null ? -1 : find_at(chart, place);
+    if (chart === null || panel < 0) {
+      events.on_leave();
+    } else {
+      events.on_point(panel, read(chart, panel, place[0]));
+    }
+  };
+
+  plot.addEventListener('pointerdown', (event) => {
+    const chart = get_chart();
+    const place = get_place(event);
+    const panel = chart === null ? -1 : find_at(chart, place);
+    if (event.pointerType === 'mouse' && event.button === 0 && panel >= 0) {
+      drag = { panel, from_px: place[0], is_long: false };
+    }
+  });
+  plot.addEventListener('pointermove', (event) => {
+    const chart = get_chart();
+    if (event.buttons === 0) {
+      end_drag(); // the button was released elsewhere
+    }
+    if (drag === null || chart === null) {
+      if (event.pointerType === 'mouse') {
+        point(event);
+      }
+      return;
+    }
+    const x_px = get_place(event)[0];
+    if (!drag.is_long && Math.abs(x_px - drag.from_px) >= kShortestDrag_px) {
+      // From now on the chart gets no events, so the end of the drag is no click in it.
+      plot.setPointerCapture(event.pointerId);
+      drag.is_long = true;
+      events.on_leave();
+    }
+    if (drag.is_long) {
+      const [left, right] = find_ends(chart, x_px);
+      const { y, height } = find_panel(chart, drag.panel);
+      band.hidden = false;
+      band.style.transform = `translate(${left}px, ${y}px)`;
+      band.style.width = `${right - left}px`;
+      band.style.height = `${height}px`;
+    }
+  });
+  plot.addEventListener('pointerup', (event) => {
+    const chart = get_chart();
+    if (drag?.is_long && chart !== null) {
+      const [left, right] = find_ends(chart, get_place(event)[0]);
+      if (right - left >= kShortestDrag_px) {
+        events.on_range(drag.panel, { from: read(chart, drag.panel, left), to: read(chart, drag.panel, right) });
+      }
+    }
+    end_drag();
+  });
+  plot.addEventListener('pointercancel', end_drag);
+  plot.addEventListener('pointerleave', (event) => {
+    if (event.pointerType === 'mouse') {
+      events.on_leave();
+    }
+  });
+  plot.addEventListener('click', point); // a tap, too
+  plot.addEventListener('dblclick', (event) => {
+    const chart = get_chart();
+    if (chart !== null && find_at(chart, get_place(event)) >= 0) {
+      events.on_reset();
+    }
+  });
+  return band;
+}
