@@ -18,27 +18,29 @@ async function shoot(target, name) {
   console.log(`docs/images/${name}.png`);
 }
 
-// The arm half-way through its first recorded test case.
-const run = await open('q1-complex-ga-seed1', 'light');
-for (const tab of await list_tabs(run)) {
-  await open_tab(run, tab);
-  if ((await run.locator('.replay').count()) > 0) {
-    break;
+// Shoots the arm in the replay that the page opens with, after a third of the time.
+async function shoot_replay(folder, name) {
+  const page = await open(folder, 'light');
+  for (const tab of await list_tabs(page)) {
+    await open_tab(page, tab);
+    if ((await page.locator('.replay').count()) > 0) {
+      break;
+    }
   }
+  await page.waitForFunction(() => window.armwright_replay?.state.frames > 0);
+  await page
+    .locator('.replay input[type=range]')
+    .first()
+    .evaluate((input) => {
+      input.value = String(Math.round(Number(input.max) * 0.31));
+      input.dispatchEvent(new Event('input', { bubbles: true }));
+    });
+  await page.waitForTimeout(500);
+  await shoot(page.locator('.card', { has: page.locator('.replay') }), name);
 }
-await run.waitForFunction(() => window.armwright_replay?.state.frames > 0);
-await run
-  .locator('.replay input[type=range]')
-  .first()
-  .evaluate((input) => {
-    input.value = String(Math.round(Number(input.max) * 0.31));
-    input.dispatchEvent(new Event('input', { bubbles: true }));
-  });
-await run.waitForTimeout(500);
-await shoot(run.locator('.card', { has: run.locator('.replay') }), 'replay');
-await open_tab(run, 'response');
-await run.waitForTimeout(500);
-await shoot(run, 'response');
+
+await shoot_replay('q1-complex-ga-seed1', 'replay');
+await shoot_replay('my_arm-cmaes-seed1', 'robot');
 
 const study = await open('q1', 'light');
 await study.waitForTimeout(500);
@@ -46,9 +48,4 @@ await shoot(study, 'verdict');
 await open_tab(study, (await list_tabs(study))[1]);
 await study.waitForTimeout(500);
 await shoot(study, 'comparison');
-
-const thesis = await open('reproduction', 'dark');
-await open_tab(thesis, 'q2');
-await thesis.waitForTimeout(500);
-await shoot(thesis, 'thesis');
 await browser.close();

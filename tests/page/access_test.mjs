@@ -84,7 +84,7 @@ async function find_faults_of_report(address, name) {
         if (size === kSizes[0] && (await tables.count()) > 0) {
           await tables.first().click();
           found.push(...(await find_violations(page, `${place}, dialog`)));
-          await page.keyboard.press('Escape');
+          await page.click('.close-dialog');
         }
       }
       await page.click('.theme');

@@ -50,10 +50,10 @@ test('the first screen of a run has its headlines and the health of the winner',
   const { page, expect_no_faults } = await open_run();
   await page.setViewportSize({ width: 1280, height: 800 });
   await open_tab(page, 'overview');
-  const tile = async (label) =>
+  const tile = async (label, part = 'value') =>
     page
       .locator('.tile', { has: page.getByText(label, { exact: true }) })
-      .locator('.tile-value')
+      .locator('.tile-' + part)
       .innerText();
   const mean_mm = (1000 * judged.case_errors.reduce((sum, error) => sum + error, 0)) / judged.case_errors.length;
   const [, before, after] = /^([\d.]+) → ([\d.]+) mm$/.exec(await tile('Mean error'));
@@ -63,7 +63,8 @@ test('the first screen of a run has its headlines and the health of the winner',
   assert.equal(await tile('Total torque'), `${Math.round(get_metric('total_torque'))} N m`);
   assert.equal(await tile('Simulations'), String(result.counts.cases));
   const { started } = JSON.parse(readFileSync(join(kFolder, 'run', 'manifest.json'), 'utf8'));
-  assert.equal(await tile('Started'), started.slice(0, 10));
+  assert.match(await tile('Time taken'), /^[\d.]+ (s|min|h)( \d+ (s|min))?$/);
+  assert.match(await tile('Time taken', 'detail'), new RegExp(`of processor time; started ${started.slice(0, 10)}, `));
 
   const card = page.locator('[data-figure=health]');
   assert.match(await card.locator('.verdict').innerText(), /The winner is/);

@@ -421,7 +421,7 @@ function make_decided(problems, leaders = [], more = {}) {
 const get_headline = (data) => {
   const [first] = study.make_study_tabs(data)[0].items;
   assert.equal(first.id, 'headline');
-  assert.equal(first.paragraphs.length, 1);
+  assert.equal(first.paragraphs.length, 2);
   return first.paragraphs[0];
 };
 
@@ -462,6 +462,25 @@ test('the headline says who is best, and who cannot be told apart from it', () =
   for (const [problems, leaders, expected] of cases) {
     assert.equal(get_headline(make_decided(problems, leaders)), expected);
   }
+});
+
+test('the headline names the optimizers that failed, and those without a value', () => {
+  const data = make_decided(['www', 'www'], []);
+  const get_failures = () => study.make_study_tabs(data)[0].items[0].paragraphs[1];
+  const set = (o, failed, infinite) => data.problems.forEach((problem) => Object.assign(problem.results[o], { failed, infinite }));
+  [0, 1, 2, 3].forEach((o) => set(o, 0, 0));
+  assert.equal(get_failures(), 'No optimizer failed, and every run has a value on the test set.');
+  const runs = 2 * data.problems[0].results[1].cells.length;
+  set(1, 2, 0);
+  assert.equal(get_failures(), `Failed by a fault of their own: b in 4 of ${runs} runs.`);
+  set(2, 0, 1);
+  set(3, 0, 2);
+  assert.equal(
+    get_failures(),
+    `Failed by a fault of their own: b in 4 of ${runs} runs. Without a value on the test set: d in 4 of ${runs} runs and c in 2 of ${runs} runs.`,
+  );
+  set(1, 0, 0);
+  assert.match(get_failures(), /^No optimizer failed\. Without a value on the test set: d in 4 of/);
 });
 
 test('the headline claims nothing where the verdict decides nothing', () => {

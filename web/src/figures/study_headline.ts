@@ -1,6 +1,7 @@
-// The one sentence at the top of a comparison. It repeats what the verdict says about the leader of
-// each problem, and is never stronger than the verdict.
+// The sentences at the top of a comparison. The first one repeats what the verdict says about the
+// leader of each problem, and is never stronger than the verdict. The second one names failures.
 import { join_names, shorten } from '../charts/names';
+import type { StudyOptimizerResult } from '../data';
 import type { Scope } from './study_parts';
 import { count_best, find_standing, is_decided, order_by_standing, type Lead, type ProblemStanding } from './study_standing';
 
@@ -171,4 +172,25 @@ export function make_headline(scope: Scope): string {
     .concat(describe_later(scope, all, winners, most))
     .concat(describe_others(scope, all));
   return clauses.join('; ') + '.';
+}
+
+// Says whose runs failed, and whose have no value on the test set, with their numbers.
+export function make_failures(scope: Scope): string {
+  const count = (o: number, get: (result: StudyOptimizerResult) => number) =>
+    scope.problems.reduce((sum, problem) => sum + get(problem.results[o]), 0);
+  const describe = (get: (result: StudyOptimizerResult) => number): string[] =>
+    scope.names
+      .map((name, o) => ({ name, some: count(o, get), all: count(o, (result) => result.cells.length) }))
+      .filter(({ some }) => some > 0)
+      .sort((a, b) => b.some - a.some)
+      .map(({ name, some, all }) => `${name} in ${some} of ${all} runs`);
+  const failed = describe((result) => result.failed);
+  const empty = describe((result) => result.infinite);
+  if (failed.length === 0 && empty.length === 0) {
+    return 'No optimizer failed, and every run has a value on the test set.';
+  }
+  return (
+    (failed.length === 0 ? 'No optimizer failed.' : 'Failed by a fault of their own: ' + list_names(failed, kMostNames) + '.') +
+    (empty.length === 0 ? '' : ' Without a value on the test set: ' + list_names(empty, kMostNames) + '.')
+  );
 }

@@ -7,7 +7,7 @@ import { make_cost_quality } from './study_cost';
 import { make_parallel } from './study_designs';
 import { make_front } from './study_front';
 import { make_standing_grid } from './study_grid';
-import { make_headline } from './study_headline';
+import { make_failures, make_headline } from './study_headline';
 import { make_pairs } from './study_pairs';
 import { make_scope, type Scope } from './study_parts';
 import { make_convergence, make_pooled_ecdf, make_profiles, make_runtime_ecdf } from './study_progress';
@@ -54,7 +54,13 @@ function make_unfinished(data: StudyData): TextItem | null {
 function make_verdict_items(data: StudyData, all: Scope): Item[] {
   const everyone = make_scope(data, data.problems, '');
   const single = data.problems.length === 1;
-  const headline: TextItem = { kind: 'text', id: 'headline', title: 'Verdict', style: 'headline', paragraphs: [make_headline(everyone)] };
+  const headline: TextItem = {
+    kind: 'text',
+    id: 'headline',
+    title: 'Verdict',
+    style: 'headline',
+    paragraphs: [make_headline(everyone), make_failures(everyone)],
+  };
   const verdict: TextItem = {
     kind: 'text',
     id: 'verdict',
