@@ -1,4 +1,5 @@
 // armwright report A B: one page about two runs or two studies.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -37,6 +38,10 @@ class CliComparison : public testing::Test {
     run({"compare", "--problems", problems, "--optimizers", "cmaes", "--no-baselines",
          "--replicates", "8", "--budget", budget, "--seed", seed, "--out", out, "--quiet"});
   }
+  void make_study_of(const std::string& out, const std::string& plan) {
+    std::ofstream(folder_ / (out + ".toml")) << plan;
+    run({"compare", out + ".toml", "--no-baselines", "--out", out, "--quiet"});
+  }
   json compare(const std::string& a, const std::string& b) {
     const Outcome outcome = run_program(folder_.path(), {"report", a, b, "--json", "--quiet"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -63,6 +68,17 @@ json find_setting(const json& page, const std::string& name) {
   return nullptr;
 }
 
+// Returns the parts of the basis whose settings differ.
+std::set<std::string> list_obstacles(const json& page) {
+  std::set<std::string> parts;
+  for (const json& one : page["settings"]) {
+    if (one["a"] != one["b"] && !one["basis"].is_null()) {
+      parts.insert(one["basis"]);
+    }
+  }
+  return parts;
+}
+
 TEST_F(CliComparison, RunsOfAFunction) {
   make_function_run("first", "ga");
   make_function_run("second", "cmaes");
@@ -73,6 +89,8 @@ TEST_F(CliComparison, RunsOfAFunction) {
   EXPECT_TRUE(page["studies"].is_null());
   EXPECT_EQ(find_setting(page, "run.optimizer"), (json{"ga", "cmaes"}));
   EXPECT_EQ(find_setting(page, "run.budget"), (json{"30", "30"}));
+  EXPECT_EQ(list_keys(page["settings"][0]), read_contract("ComparedSetting"));
+  EXPECT_EQ(list_obstacles(page), std::set<std::string>{});
   EXPECT_EQ(page["runs"]["same_cases"], true);
   EXPECT_EQ(page["runs"]["a"]["optimizer"], "ga");
   EXPECT_EQ(page["runs"]["b"]["optimizer"], "cmaes");
@@ -96,6 +114,7 @@ TEST_F(CliComparison, RunsOfAnArmCaseByCase) {
     wins += a_better ? 1 : 0;
   }
   EXPECT_EQ(paired["wins"], wins);
+  EXPECT_EQ(list_obstacles(page), std::set<std::string>{});
   ASSERT_EQ(page["replays"].size(), 1);
   const json& replay = page["replays"][0];
   EXPECT_EQ(replay["designs"].size(), 2);
@@ -111,6 +130,27 @@ TEST_F(CliComparison, RunsOfAnArmCaseByCase) {
   EXPECT_EQ(itself["runs"]["paired"]["ties"], 7);
   EXPECT_EQ(itself["runs"]["paired"]["p"], 1);
   EXPECT_EQ(itself["runs"]["paired"]["a12"], 0.5);
+  EXPECT_TRUE(itself["runs"]["paired"]["better"].is_null());
+
+  // The side that is better has the larger sum of ranks, whatever the number of its cases.
+  make_arm_run("worse", {"--set", "variables.bounds_factor=1.01"});
+  const json far = compare("a", "worse");
+  EXPECT_EQ(list_obstacles(far), std::set<std::string>{"the search space"});
+  EXPECT_EQ(far["runs"]["paired"]["better"], "a");
+  EXPECT_EQ(compare("worse", "a")["runs"]["paired"]["better"], "b");
+}
+
+TEST_F(CliComparison, AnySettingThatChangesWhatIsMeasuredIsAnObstacle) {
+  make_arm_run("a", {});
+  const auto list = [&](const std::string& name, const std::string& setting) {
+    make_arm_run(name, {"--set", setting});
+    return list_obstacles(compare("a", name));
+  };
+  using Parts = std::set<std::string>;
+  EXPECT_EQ(list("space", "workspace.radius_m=0.7"), Parts{"the problem"});
+  EXPECT_EQ(list("cutoff", "training.cutoff_error_m=2"), Parts{"the training"});
+  EXPECT_EQ(list("noise", "perturbation.quantisation_rad=1e-4"), Parts{"the problem"});
+  EXPECT_EQ(list("judging", "sets.validation_cases=5"), Parts{});
 }
 
 TEST_F(CliComparison, RunsWithOtherTasksHaveNoPairs) {
@@ -150,6 +190,86 @@ TEST_F(CliComparison, StudiesReplicateByReplicate) {
   EXPECT_EQ(turned["a12"], 1 - cell["a12"].get<double>());
 }
 
+TEST_F(CliComparison, FrontsOfTwoStudiesAreNotCompared) {
+  for (const char* out : {"first", "second"}) {
+    run({"compare", "--problems", "q2-pareto", "--optimizers", "pagmo:nsga2", "--no-baselines",
+         "--replicates", "1", "--budget", "40", "--engine", "articulated", "--set",
+         "sets.test_cases=3", "--set", "sets.validation_cases=3", "--out", out, "--quiet"});
+  }
+  const json page = compare("first", "second");
+  EXPECT_TRUE(page["studies"]["cells"].empty());
+  EXPECT_THAT(page["notes"].dump(),
+              HasSubstr("The problem q2-pareto is not compared: it has several objectives"));
+}
+
+TEST_F(CliComparison, StudiesWithOtherProblemsHaveNoTest) {
+  const auto make = [&](const std::string& out, const std::string& instance) {
+    make_study_of(out, R"(problems = []
+optimizers = ["cmaes"]
+replicates = 6
+budget = 40
+[[problem]]
+name = "sphere"
+label = "ball of 1.5 m"
+set = ["function.instance=)" +
+                           instance + R"("]
+[[problem]]
+name = "sphere"
+)");
+  };
+  make("first", "1");
+  make("second", "2");
+  const json page = compare("first", "second");
+  EXPECT_EQ(list_obstacles(page), std::set<std::string>{"the problem"});
+  const json& cells = page["studies"]["cells"];
+  ASSERT_EQ(cells.size(), 2);
+  for (const json& cell : cells) {
+    const bool differs = cell["problem"] == "ball of 1.5 m";
+    EXPECT_EQ(cell["untested"], differs ? json("the problem differs") : json(nullptr));
+    EXPECT_EQ(cell["p"].is_null(), differs);
+    EXPECT_EQ(cell["a12"].is_null(), differs);
+    EXPECT_EQ(cell["pairs"], differs ? 0 : 6);
+  }
+}
+
+TEST_F(CliComparison, StudiesListEverySettingOfThePlan) {
+  const auto make = [&](const std::string& out, const std::string& more, int cases) {
+    make_study_of(out, more + fmt::format(R"(problems = ["q1-complex"]
+replicates = 1
+budget = 40
+set = ["physics.engine=articulated", "sets.test_cases=3", "sets.validation_cases=3"]
+[[optimizer]]
+name = "cmaes"
+label = "cmaes"
+schedule = "fixed:{}"
+)",
+                                          cases));
+  };
+  make("first", "checkpoints = 4\nselection.last = 3\n", 2);
+  make("second", "checkpoints = 3\nvalue = \"failures\"\nconstraint_tolerance = 0.1\n", 4);
+  const json page = compare("first", "second");
+  EXPECT_EQ(find_setting(page, "value"), (json{"objective", "failures"}));
+  EXPECT_EQ(find_setting(page, "checkpoints"), (json{"4", "3"}));
+  EXPECT_EQ(find_setting(page, "constraint_tolerance"), (json{"0.0", "0.1"}));
+  EXPECT_EQ(find_setting(page, "selection.last"), (json{"3", "9"}));
+  EXPECT_EQ(find_setting(page, "optimizers.cmaes.schedule"), (json{"fixed:2", "fixed:4"}));
+  EXPECT_TRUE(page["studies"]["cells"].empty());
+}
+
+TEST_F(CliComparison, FewPairsHaveNoTest) {
+  for (const char* out : {"first", "second"}) {
+    make_study_of(out, R"(problems = ["sphere"]
+optimizers = ["cmaes"]
+replicates = 5
+budget = 40
+)");
+  }
+  const json cell = compare("first", "second")["studies"]["cells"][0];
+  EXPECT_EQ(cell["pairs"], 5);
+  EXPECT_EQ(cell["untested"], "not enough pairs to decide; at least 6 are needed");
+  EXPECT_TRUE(cell["p"].is_null());
+}
+
 TEST_F(CliComparison, StudiesWithOtherSeedsHaveNoPairs) {
   make_study("first", "40");
   make_study("second", "40", "2");
@@ -157,6 +277,7 @@ TEST_F(CliComparison, StudiesWithOtherSeedsHaveNoPairs) {
   EXPECT_EQ(cell["pairs"], 0);
   EXPECT_TRUE(cell["p"].is_null());
   EXPECT_TRUE(cell["better"].is_null());
+  EXPECT_EQ(cell["untested"], "the seed differs");
   EXPECT_FALSE(cell["a12"].is_null());
 }
 

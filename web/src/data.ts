@@ -573,6 +573,7 @@ export interface ComparedSetting {
   name: string; // "problem.task.speed_m_per_s"
   a: string | null; // null if A does not have it
   b: string | null;
+  basis: string | null; // the part of the comparison's basis ("the engine"); null if results do not depend on it
 }
 
 // The pages of both runs without replays. The replay of the comparison has both winners on the cases
@@ -592,6 +593,7 @@ export interface PairedErrors {
   losses: number;
   p: number; // of the signed-rank test
   a12: number; // the probability that a case of A is better than a case of B
+  better: 'a' | 'b' | null; // by the test; null if it does not tell them apart
 }
 
 export interface ComparedStudies {
@@ -600,8 +602,8 @@ export interface ComparedStudies {
   cells: ComparedCell[]; // the problems and optimizers that both have
 }
 
-// One optimizer on one problem in both studies. The studies have no pairs, and p is null, if they do
-// not draw their replicates from the same seed. A win is a replicate in which A is better.
+// One optimizer on one problem in both studies. p is null if `untested` says why. A win is a replicate
+// in which A is better.
 export interface ComparedCell {
   problem: string;
   optimizer: string;
@@ -612,10 +614,11 @@ export interface ComparedCell {
   wins: number;
   ties: number;
   losses: number;
-  a12: number | null; // the probability that a run of A is better than a run of B; null without runs
+  a12: number | null; // the probability that a run of A is better than a run of B; null without runs or if settings of the problem differ
   p: number | null; // of the signed-rank test
   p_holm: number | null; // after Holm's correction over all cells
   better: 'a' | 'b' | null; // null if the test does not tell them apart
+  untested: string | null; // why there is no test: "the seed differs"
 }
 
 export interface ComparedSide {

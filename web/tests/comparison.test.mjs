@@ -12,10 +12,11 @@ const { draw_svg, get_initial_picks, kDark, kLight, make_page, make_replay_set, 
 `);
 
 const kSettings = [
-  { name: 'problem.physics.engine', a: 'ode', b: 'ode' },
-  { name: 'problem.sets.test', a: 'test/2', b: 'test/2' },
-  { name: 'run.budget', a: '1400', b: '1400' },
-  { name: 'run.optimizer', a: 'ga', b: 'cmaes' },
+  { name: 'problem.physics.engine', a: 'ode', b: 'ode', basis: 'the engine' },
+  { name: 'problem.sets.test', a: 'test/2', b: 'test/2', basis: 'the test set' },
+  { name: 'problem.workspace.radius_m', a: '0.8', b: '0.8', basis: 'the problem' },
+  { name: 'run.budget', a: '1400', b: '1400', basis: 'the budget' },
+  { name: 'run.optimizer', a: 'ga', b: 'cmaes', basis: null },
 ];
 
 function make_comparison(parts) {
@@ -41,7 +42,7 @@ function make_comparison(parts) {
 function make_runs() {
   const [a, b] = [make_run_data(), make_run_data()];
   b.headline.value = a.headline.value / 2;
-  const paired = { cases: 500, wins: 40, ties: 10, losses: 450, p: 1e-9, a12: 0.1 };
+  const paired = { cases: 500, wins: 40, ties: 10, losses: 450, p: 1e-9, a12: 0.1, better: 'b' };
   return { a, b, same_cases: true, paired };
 }
 
@@ -86,19 +87,25 @@ test('the headline names the better run, by how much, and what the cases decide'
   assert.match(read()[0], /^B has the smaller mean error on the test set: [\d.]+ mm against [\d.]+ mm \(−50 %\)\.$/);
   assert.match(
     read()[1],
-    /^Case by case, B is better in 450 of 500; the test cases tell the winners apart \(signed-rank test, p <1e-6\)\. /,
+    /^Case by case, A is better in 40 of 500 and B in 450; by the ranks of the differences, B is better \(signed-rank test, p <1e-6\)\. /,
   );
   assert.match(read()[1], /The runs are comparable: problem, test set, engine and budget are the same\.$/);
-  runs.paired.p = 0.2;
-  assert.match(read()[1], /the test cases do not tell the winners apart \(signed-rank test, p = 0\.2/);
+  Object.assign(runs.paired, { wins: 450, losses: 40 }); // many small wins lose against few large ones
+  assert.match(read()[1], /A is better in 450 of 500 and B in 40; by the ranks of the differences, B is better/);
+  Object.assign(runs.paired, { p: 0.2, better: null });
+  assert.match(read()[1], /the cases do not tell the winners apart \(signed-rank test, p = 0\.2/);
+  runs.paired.cases = 5;
+  assert.match(read()[1], /not enough cases to decide; at least 6 are needed\. /);
   [runs.a, runs.b] = [runs.b, runs.a];
   assert.match(read()[0], /^A has the smaller mean error/);
   runs.b.headline.value = runs.a.headline.value;
   assert.match(read()[0], /^A and B have the same mean error/);
   runs.b.headline.value = null;
-  assert.match(read()[0], /^B has no result on the test set yet/);
+  assert.match(read()[0], /^B has no result on the test set, so/);
+  runs.b.finished = false;
+  assert.match(read()[0], /^B has no result on the test set yet, so/);
   runs.b.headline = { ...runs.a.headline, quantity: { name: 'f', unit: '' } };
-  assert.match(read()[0], /^The runs minimise different quantities/);
+  assert.deepEqual(read(), ['The results of the runs cannot be compared: they minimise different quantities.']);
 });
 
 test('the headline says what differs in the basis of the comparison', () => {
@@ -109,7 +116,10 @@ test('the headline says what differs in the basis of the comparison', () => {
         settings: kSettings.map((one) => (one.name === name ? { ...one, b } : one)),
       }),
       'headline',
-    ).paragraphs[1];
+    ).paragraphs.pop();
+  assert.equal(with_setting('problem.workspace.radius_m', '0.7'), 'The results of the runs cannot be compared: the problem differs.');
+  const differing = [{ name: 'run.problem', a: 'sphere', b: 'constrained', basis: 'the problem' }];
+  assert.ok(get_items(make_comparison({ runs: make_runs(), settings: differing })).every((item) => item.id !== 'courses'));
   assert.match(with_setting('run.budget', '700'), /Both winners were tested on the same cases, but the budget differs\.$/);
   assert.match(with_setting('problem.physics.engine', 'articulated'), /Compare with care: the engine differs\.$/);
   assert.match(with_setting('problem.sets.test', 'test/3'), /Compare with care: the test set differs\.$/);
@@ -118,8 +128,8 @@ test('the headline says what differs in the basis of the comparison', () => {
 test('settings that differ come first, the others have their own tab', () => {
   const data = make_comparison({ runs: make_runs() });
   assert.deepEqual(find(data, 'differences').table.rows, [['run.optimizer', 'ga', 'cmaes']]);
-  assert.equal(find(data, 'equal-settings').table.rows.length, 3);
-  data.settings = [{ name: 'run.seed', a: '1', b: null }];
+  assert.equal(find(data, 'equal-settings').table.rows.length, 4);
+  data.settings = [{ name: 'run.seed', a: '1', b: null, basis: null }];
   assert.deepEqual(find(data, 'differences').table.rows, [['run.seed', '1', '–']]);
 });
 
@@ -168,6 +178,7 @@ function make_cell(problem, optimizer, more = {}) {
       a12: 0,
       p: 0.0078,
       p_holm: 0.0156,
+      untested: null,
     },
     ...{ a: { runs: 8, q1: 0.004, median: 0.005, q3: 0.006 }, b: { runs: 8, q1: 0.001, median: 0.002, q3: 0.003 }, better: 'b', ...more },
   };
@@ -182,6 +193,10 @@ test('a comparison of studies has the curves of both', () => {
     .table({})
     .rows.map((row) => row[0]);
   assert.deepEqual([...new Set(names.map((name) => name.slice(0, 3)))].sort(), ['A: ', 'B: ']);
+  a.problems.forEach((one) => (one.has_front = true));
+  assert.ok(get_items(data).every((item) => item.id !== 'convergence')); // hypervolumes have no common reference
+  a.problems.forEach((one) => (one.has_front = false));
+  find(data, 'convergence');
   b.problems.forEach((one) => (one.checkpoints = one.checkpoints.map((cases) => 2 * cases)));
   assert.ok(get_items(data).every((item) => item.id !== 'convergence')); // curves at other budgets do not fit
 });
@@ -196,8 +211,27 @@ test('the headline of studies repeats the tests', () => {
     'A is better for ga on q1; B is better for ga on q2; the other result cannot be told apart.',
   );
   assert.match(read([make_cell('q1', 'ga', open)]), /^No result of A can be told apart from that of B, for the one optimizer/);
-  assert.match(read([make_cell('q1', 'ga', { pairs: 0, p: null, p_holm: null, better: null })]), /form no pairs/);
+  const untested = (why) => ({ pairs: 0, p: null, p_holm: null, better: null, untested: why });
+  assert.equal(
+    read([make_cell('q1', 'ga', untested('the seed differs')), make_cell('q1', 'cmaes', untested('the seed differs'))]),
+    'No test can tell the studies apart: the seed differs.',
+  );
+  assert.equal(
+    read([make_cell('q1', 'ga', open), make_cell('q2', 'ga', untested('the engine differs'))]),
+    'No result of A can be told apart from that of B, for the one optimizer and problem that has a test. 1 result without a test: the engine differs.',
+  );
+  assert.equal(
+    read([make_cell('q1', 'ga'), make_cell('q2', 'ga', untested('the engine differs'))]),
+    'B is better for ga on q1. 1 result without a test: the engine differs.',
+  );
+  assert.match(read([]), /no problem that both have has values with the same meaning/);
+  b.problems = [];
   assert.match(read([]), /no optimizer and problem in common/);
+  const settings = [{ name: 'value', a: 'objective', b: 'failures', basis: 'the value of a run' }];
+  assert.match(
+    find(make_comparison({ studies: { a, b, cells: [] }, settings }), 'headline').paragraphs[0],
+    /the values of their runs have different meanings: objective in A, failures in B\.$/,
+  );
 });
 
 test('the grid says whether spreads overlap and what the test decides', () => {
@@ -219,4 +253,13 @@ test('the grid says whether spreads overlap and what the test decides', () => {
   ]);
   assert.equal(rows[1][2].value, '= not told apart');
   assert.equal(rows[1][6], 'yes');
+  const few = make_cell('q1', 'ga', {
+    pairs: 5,
+    p: null,
+    p_holm: null,
+    better: null,
+    untested: 'not enough pairs to decide; at least 6 are needed',
+  });
+  const [row] = find(make_comparison({ studies: { a, b, cells: [few] } }), 'compared-cells').table.rows;
+  assert.equal(row[2].value, '? no test: not enough pairs to decide; at least 6 are needed');
 });

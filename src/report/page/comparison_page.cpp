@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/config.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "report/evidence/page_json.hpp"
@@ -37,37 +38,102 @@ void flatten(const json& value, const std::string& key, std::map<std::string, st
   }
 }
 
-using Settings = std::map<std::string, std::string>;
+struct OneSetting {
+  std::string text;
+  std::string basis;  // what of the comparison's basis it belongs to; empty if to nothing
+};
+using Settings = std::map<std::string, OneSetting>;
+
+constexpr const char* kProblem = "the problem";
+constexpr const char* kTestSet = "the test set";
+constexpr const char* kBudget = "the budget";
+
+// Returns the part of the basis that a key of a problem belongs to, in words. Only keys that are
+// known not to change what is measured, nor the start, belong to none.
+std::string find_basis(const std::string& key) {
+  const auto is_in = [&](const char* table) {
+    return key == table || key.starts_with(table + std::string("."));
+  };
+  if (is_in("run") || is_in("schedule") || is_in("racing") || is_in("sweep") ||
+      is_in("sets.training") || is_in("sets.validation") || is_in("sets.validation_cases")) {
+    return "";
+  }
+  constexpr std::pair<const char*, const char*> kParts[] = {{"sets", kTestSet},
+                                                            {"physics", "the engine"},
+                                                            {"control", "the controller"},
+                                                            {"training", "the training"},
+                                                            {"variables", "the search space"}};
+  const auto part = std::ranges::find_if(kParts, [&](const auto& one) { return is_in(one.first); });
+  return part == std::end(kParts) ? kProblem : part->second;
+}
+
+// Returns the parts of the basis in which both sides differ.
+std::set<std::string> list_obstacles(const Settings& a, const Settings& b) {
+  std::set<std::string> parts;
+  for (const auto& [mine, theirs] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    for (const auto& [key, one] : *mine) {
+      const auto other = theirs->find(key);
+      if (!one.basis.empty() && (other == theirs->end() || other->second.text != one.text)) {
+        parts.insert(one.basis);
+      }
+    }
+  }
+  return parts;
+}
 
 // Returns a list of ComparedSetting: one per key of either side, in the order of the keys.
 json make_settings(const Settings& a, const Settings& b) {
-  std::set<std::string> keys;
-  for (const Settings* one : {&a, &b}) {
-    for (const auto& [key, value] : *one) {
-      keys.insert(key);
-    }
-  }
-  const auto find = [](const Settings& all, const std::string& key) {
-    const auto found = all.find(key);
-    return found == all.end() ? json(nullptr) : json(sanitize(found->second));
+  Settings all = a;
+  all.insert(b.begin(), b.end());
+  const auto find = [](const Settings& settings, const std::string& key) {
+    const auto found = settings.find(key);
+    return found == settings.end() ? json(nullptr) : json(sanitize(found->second.text));
   };
   json list = json::array();
-  for (const std::string& key : keys) {
-    list.push_back({{"name", sanitize(key)}, {"a", find(a, key)}, {"b", find(b, key)}});
+  for (const auto& [key, one] : all) {
+    list.push_back({{"name", sanitize(key)},
+                    {"a", find(a, key)},
+                    {"b", find(b, key)},
+                    {"basis", one.basis.empty() ? json(nullptr) : json(one.basis)}});
   }
   return list;
 }
 
-// Returns what decides the run's course and result, without its title and description.
+// Adds every setting of a problem, without its title and description.
+void add_problem(const json& configuration, const std::string& prefix, Settings& settings) {
+  std::map<std::string, std::string> all;
+  flatten(configuration, "", all);
+  for (const auto& [key, text] : all) {
+    if (key != "title" && key != "description" && key != "physics.simd" &&
+        !key.starts_with("published")) {
+      settings[prefix + key] = {text, find_basis(key)};
+    }
+  }
+}
+
+// Adds every number and text in `value`, which do not belong to the basis.
+void add_rest(const json& value, const std::string& key, Settings& settings) {
+  std::map<std::string, std::string> all;
+  flatten(value, key, all);
+  for (const auto& [name, text] : all) {
+    settings[name] = {text, ""};
+  }
+}
+
+// Returns what decides the run's course and result.
 Settings list_settings(const RecordedRun& run) {
   Settings settings;
-  flatten(run.configuration, "", settings);
-  settings["run.problem"] = run.problem_name;
-  for (const char* key : {"problem.title", "problem.description", "problem.physics.simd"}) {
-    settings.erase(key);
+  add_rest(run.configuration.at("run"), "run", settings);
+  add_problem(run.configuration.at("problem"), "problem.", settings);
+  settings["run.problem"] = {run.problem_name, kProblem};
+  if (const auto budget = settings.find("run.budget"); budget != settings.end()) {
+    budget->second.basis = kBudget;
   }
-  std::erase_if(settings,
-                [](const auto& one) { return one.first.starts_with("problem.published"); });
+  for (const auto& [file, hash] : run.configuration.at("inputs").items()) {
+    // The other files are those of a plugin.
+    const bool is_problems = !run.problem || run.problem->input_hashes.contains(file);
+    settings["inputs." + file] = {hash.get<std::string>(), is_problems ? kProblem : ""};
+  }
   return settings;
 }
 
@@ -84,37 +150,49 @@ std::string join_labels(const std::set<std::string>& labels) {
   return join(std::vector<std::string>(labels.begin(), labels.end()), ", ");
 }
 
+// Returns the settings of a problem of a study, with names that begin with `prefix`. Budget and
+// default optimizer of the problem itself count for no study.
+Settings list_settings(const StudyProblem& problem, const std::string& prefix) {
+  json configuration = json::parse(problem.loaded.resolved_json);
+  configuration.erase("run");
+  configuration["schedule"] = describe_schedule(problem);
+  Settings settings;
+  add_problem(configuration, prefix, settings);
+  for (const auto& [file, hash] : problem.loaded.input_hashes) {
+    settings[prefix + "inputs." + file] = {hash, kProblem};
+  }
+  return settings;
+}
+
 // Returns the settings of a study. Those of a problem or an optimizer count only if the other study
 // has it, too.
 Settings list_settings(const StudyPlan& plan, const StudyPlan& other) {
-  Settings settings;
-  settings["budget"] = std::to_string(plan.budget);
-  settings["replicates"] = std::to_string(plan.replicates);
-  settings["seed"] = std::to_string(plan.seed);
-  settings["start_spread"] = format_exact(plan.start_spread);
-  settings["problems"] = join_labels(list_labels(plan.problems));
-  settings["optimizers"] = join_labels(list_labels(plan.optimizers));
-  for (const StudyProblem& problem : plan.problems) {
-    if (!list_labels(other.problems).contains(problem.label)) {
-      continue;
-    }
-    const std::string key = "problems." + problem.label;
-    flatten(json::parse(problem.loaded.resolved_json), key, settings);
-    settings[key + ".schedule"] = problem.own_schedules ? "own" : to_text(problem.schedule);
-    for (const char* text : {".title", ".description", ".physics.simd"}) {
-      settings.erase(key + text);
-    }
-    std::erase_if(settings, [&](const auto& one) {
-      return one.first.starts_with(key + ".published") || one.first.starts_with(key + ".run.") ||
-             one.first.starts_with(key + ".schedule.");
-    });
+  json recorded = json::parse(ConfigTable::parse(to_toml(plan), "study.toml").to_json());
+  const json optimizers = recorded.at("optimizer");
+  for (const char* key : {"plan_sha256", "name", "title", "problem", "optimizer"}) {
+    recorded.erase(key);
   }
-  for (const StudyOptimizer& optimizer : plan.optimizers) {
-    if (!list_labels(other.optimizers).contains(optimizer.label)) {
-      continue;
+  Settings settings;
+  add_rest(recorded, "", settings);
+  settings["budget"].basis = kBudget;
+  settings["constraint_tolerance"].basis = "the tolerance of constraints";
+  settings["value"] = {plan.value == StudyValue::failures ? "failures" : "objective",
+                       "the value of a run"};
+  settings["problems"] = {join_labels(list_labels(plan.problems)), ""};
+  settings["optimizers"] = {join_labels(list_labels(plan.optimizers)), ""};
+  for (const StudyProblem& problem : plan.problems) {
+    if (list_labels(other.problems).contains(problem.label)) {
+      settings.merge(list_settings(problem, "problems." + problem.label + "."));
     }
-    settings["optimizers." + optimizer.label] =
-        join(std::vector<std::string>{optimizer.row.name, join(optimizer.options, ", ")}, " ");
+  }
+  for (json one : optimizers) {
+    const auto label = one.at("label").get<std::string>();
+    if (list_labels(other.optimizers).contains(label)) {
+      for (const char* key : {"label", "baseline", "description"}) {
+        one.erase(key);
+      }
+      add_rest(one, "optimizers." + label, settings);
+    }
   }
   return settings;
 }
@@ -242,26 +320,22 @@ json make_paired_errors(const RecordedRun& a, const RecordedRun& b, bool same_ca
   if (!same_cases || errors_a.empty() || errors_a.size() != errors_b.size()) {
     return nullptr;
   }
-  const SignedRankTest test = calc_signed_rank_test(errors_a, errors_b);
-  const WinTieLoss wins = count_wins(errors_a, errors_b);
-  return {{"cases", errors_a.size()}, {"wins", wins.wins}, {"ties", wins.ties},
-          {"losses", wins.losses},    {"p", test.p_value}, {"a12", calc_a12(errors_a, errors_b)}};
+  const PairResult pair = compare_pairs(std::vector{errors_a, errors_b}).front();
+  const bool a_first = pair.a == 0;
+  return {{"cases", errors_a.size()},
+          {"wins", a_first ? pair.wins.wins : pair.wins.losses},
+          {"ties", pair.wins.ties},
+          {"losses", a_first ? pair.wins.losses : pair.wins.wins},
+          {"p", pair.test.p_value},
+          {"a12", calc_a12(errors_a, errors_b)},
+          {"better", pair.is_significant() ? json(a_first ? "a" : "b") : json(nullptr)}};
 }
 
-// Returns whether both runs judge their winners on the same cases. Cases follow from the set, its
-// size, the robot and the task.
+// Returns whether both runs judge their winners on the same cases, which follow from the problem and
+// its test set.
 bool have_same_cases(const Settings& a, const Settings& b) {
-  const auto decides = [](const std::string& key) {
-    return key == "run.problem" || key == "problem.sets.test" || key == "problem.sets.test_cases" ||
-           key.starts_with("problem.robot") || key.starts_with("problem.task") ||
-           key.starts_with("problem.cases") || key.starts_with("problem.workspace") ||
-           (key.starts_with("inputs.") && key.ends_with(".urdf"));
-  };
-  const auto pick = [&](Settings all) {
-    std::erase_if(all, [&](const auto& one) { return !decides(one.first); });
-    return all;
-  };
-  return pick(a) == pick(b);
+  const std::set<std::string> obstacles = list_obstacles(a, b);
+  return !obstacles.contains(kProblem) && !obstacles.contains(kTestSet);
 }
 
 std::optional<json> make_runs(const Folders& folders, PageOptions options, StopSignal& stop,
@@ -367,23 +441,68 @@ json make_side(const std::map<int, double>& values) {
           {"q3", or_null(spread.upper_quartile)}};
 }
 
-// Returns a list of ComparedCell: one per problem and optimizer that both studies have. Replicates
-// with the same number form a pair if both studies draw them from the same seed.
+// Returns why the results of a problem of both studies cannot be compared; empty if they can.
+std::string find_obstacle(const StudyPlan& plan_a, const StudyProblem& a, const StudyPlan& plan_b,
+                          const StudyProblem& b) {
+  std::set<std::string> parts = list_obstacles(list_settings(a, ""), list_settings(b, ""));
+  if (plan_a.constraint_tolerance != plan_b.constraint_tolerance) {
+    parts.insert("the tolerance of constraints");
+  }
+  return parts.empty()
+             ? ""
+             : fmt::format("{} {}", join_labels(parts), parts.size() == 1 ? "differs" : "differ");
+}
+
+// Returns why replicates with the same number form no pairs, though the results can be compared;
+// empty if they do.
+std::string find_unpaired(const StudyPlan& a, const StudyPlan& b) {
+  return a.seed != b.seed                   ? "the seed differs"
+         : a.start_spread != b.start_spread ? "the spread of the starts differs"
+                                            : "";
+}
+
+// Returns whether the values of the problem are shares of a hypervolume. These are measured against
+// the study's own ideal and reference point, and mean nothing beside those of another study.
+bool have_front(const ProblemResult& a, const ProblemResult& b) {
+  return a.has_front || b.has_front;
+}
+
+// Returns one note per problem that both studies have and that is not compared.
+json list_omissions(const StudyResult& a, const StudyResult& b) {
+  json notes = json::array();
+  for (const ProblemResult& problem : a.problems) {
+    const auto other = find_label(b.problems, problem.label);
+    if (other && have_front(problem, b.problems[*other])) {
+      notes.push_back(fmt::format(
+          "The problem {} is not compared: it has several objectives, and each study measures the "
+          "hypervolume from its own reference point.",
+          sanitize(problem.label)));
+    }
+  }
+  return notes;
+}
+
+// Returns a list of ComparedCell: one per problem and optimizer that both studies have. Only results
+// of equal problems are compared, and only pairs of replicates with the same start and training set
+// are tested.
 json make_cells(const StudyPlan& plan_a, const StudyResult& a, const StudyPlan& plan_b,
                 const StudyResult& b) {
-  const bool paired = plan_a.seed == plan_b.seed && plan_a.start_spread == plan_b.start_spread;
   json cells = json::array();
   std::vector<double> p_values;
   for (std::size_t p = 0; p < plan_a.problems.size(); ++p) {
     const std::string& problem = plan_a.problems[p].label;
     const auto other_p = find_label(plan_b.problems, problem);
-    if (!other_p) {
+    if (!other_p || plan_a.value != plan_b.value ||
+        have_front(a.problems[p], b.problems[*other_p])) {
       continue;
     }
     const ProblemResult& result_a = a.problems[p];
     const ProblemResult& result_b = b.problems[*other_p];
     const bool same_quantity = result_a.quantity.name == result_b.quantity.name &&
                                result_a.quantity.unit == result_b.quantity.unit;
+    const std::string obstacle =
+        find_obstacle(plan_a, plan_a.problems[p], plan_b, plan_b.problems[*other_p]);
+    const std::string unpaired = obstacle.empty() ? find_unpaired(plan_a, plan_b) : obstacle;
     for (std::size_t o = 0; same_quantity && o < plan_a.optimizers.size(); ++o) {
       const std::string& optimizer = plan_a.optimizers[o].label;
       const auto other_o = find_label(plan_b.optimizers, optimizer);
@@ -395,7 +514,7 @@ json make_cells(const StudyPlan& plan_a, const StudyResult& a, const StudyPlan& 
       std::vector<std::vector<double>> pairs(2);
       for (const auto& [replicate, value] : values_a) {
         const auto found = values_b.find(replicate);
-        if (found != values_b.end()) {
+        if (unpaired.empty() && found != values_b.end()) {
           pairs[0].push_back(value);
           pairs[1].push_back(found->second);
         }
@@ -405,15 +524,22 @@ json make_cells(const StudyPlan& plan_a, const StudyResult& a, const StudyPlan& 
                    {"quantity", make_quantity(result_a.quantity)},
                    {"a", make_side(values_a)},
                    {"b", make_side(values_b)},
-                   {"pairs", paired ? pairs[0].size() : 0},
+                   {"pairs", pairs[0].size()},
                    {"wins", 0},
                    {"ties", 0},
                    {"losses", 0},
-                   {"a12", calc_effect(values_a, values_b, result_a.margin)},
+                   {"a12", obstacle.empty() ? calc_effect(values_a, values_b, result_a.margin)
+                                            : json(nullptr)},
                    {"p", nullptr},
                    {"p_holm", nullptr},
-                   {"better", nullptr}};
-      if (paired && !pairs[0].empty()) {
+                   {"better", nullptr},
+                   {"untested", nullptr}};
+      if (!unpaired.empty()) {
+        cell["untested"] = unpaired;
+      } else if (std::ssize(pairs[0]) < kFewestPairs) {
+        cell["untested"] =
+            fmt::format("not enough pairs to decide; at least {} are needed", kFewestPairs);
+      } else {
         const PairResult pair = compare_pairs(pairs, result_a.margin).front();
         const bool a_first = pair.a == 0;
         cell["wins"] = a_first ? pair.wins.wins : pair.wins.losses;
@@ -434,7 +560,7 @@ json make_cells(const StudyPlan& plan_a, const StudyResult& a, const StudyPlan& 
     }
     const double p = adjusted[next++];
     cell["p_holm"] = p;
-    if (cell["pairs"].get<int>() < kFewestPairs || p >= kSignificance) {
+    if (p >= kSignificance) {
       cell["better"] = nullptr;
     }
   }
@@ -456,10 +582,14 @@ std::optional<json> make_studies(const Folders& folders, PageOptions options, St
   json page =
       make_frame(folders, page_a, page_b,
                  make_settings(list_settings(plan_a, plan_b), list_settings(plan_b, plan_a)));
-  json cells = make_cells(plan_a, analyze_study(plan_a, folders[0], MissingCells::left_out), plan_b,
-                          analyze_study(plan_b, folders[1], MissingCells::left_out));
-  page["studies"] = {
-      {"a", std::move(page_a)}, {"b", std::move(page_b)}, {"cells", std::move(cells)}};
+  const StudyResult result_a = analyze_study(plan_a, folders[0], MissingCells::left_out);
+  const StudyResult result_b = analyze_study(plan_b, folders[1], MissingCells::left_out);
+  for (json& note : list_omissions(result_a, result_b)) {
+    page["notes"].push_back(std::move(note));
+  }
+  page["studies"] = {{"a", std::move(page_a)},
+                     {"b", std::move(page_b)},
+                     {"cells", make_cells(plan_a, result_a, plan_b, result_b)}};
   return page;
 }
 

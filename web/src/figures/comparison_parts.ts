@@ -1,4 +1,5 @@
 // What the comparisons of two runs and of two studies share: settings, and words for differences.
+import { join_names } from '../charts/names';
 import type { ComparedSetting } from '../data';
 import type { TableItem, Value } from '../model';
 import { format_number } from '../numbers';
@@ -48,19 +49,13 @@ export function make_equal_table(settings: ComparedSetting[]): TableItem | null 
   return equal.length === 0 ? null : make_settings_table(equal, 'equal-settings', 'Settings that both have', '');
 }
 
-// The settings on which the numbers of both sides depend, with the words of a sentence.
-const kBasis: { words: string; matches: RegExp }[] = [
-  {
-    words: 'the problem',
-    matches: /^(run\.problem$|inputs\.|(problem|problems\.[^.]*)\.(kind|objective|objectives|robot|task|control|function|variables))/,
-  },
-  { words: 'the test set', matches: /\.sets\.test/ },
-  { words: 'the engine', matches: /\.physics\./ },
-  { words: 'the budget', matches: /^(run\.)?budget$/ },
-];
-
-// Returns the parts of the basis that differ.
+// Returns the parts of the basis of the comparison in which the sides differ, in words.
 export function find_obstacles(settings: ComparedSetting[]): string[] {
-  const differences = find_differences(settings);
-  return kBasis.filter((one) => differences.some((setting) => one.matches.test(setting.name))).map((one) => one.words);
+  const parts = find_differences(settings).map((one) => one.basis);
+  return parts.filter((part, i): part is string => part !== null && parts.indexOf(part) === i);
+}
+
+// Returns "the engine and the budget differ".
+export function describe_obstacles(obstacles: string[]): string {
+  return `${join_names(obstacles)} ${obstacles.length === 1 ? 'differs' : 'differ'}`;
 }

@@ -7,7 +7,7 @@ import { make_line, type Part, type Point } from '../charts/parts';
 import type { ComparedRuns, ComparisonData, Quantity, RunData, TestErrors, VariableHistory } from '../data';
 import type { Cell, Figure, Item, SummaryItem, Tab, TableItem, TextItem, Value } from '../model';
 import { format_number } from '../numbers';
-import { describe_change, find_obstacles, make_differences_table, make_equal_table } from './comparison_parts';
+import { describe_change, describe_obstacles, find_obstacles, make_differences_table, make_equal_table } from './comparison_parts';
 import { make_response_figure } from './distance_response';
 import { make_health_item, make_tiles_item } from './health';
 import { make_joint_figures } from './joints';
@@ -20,7 +20,7 @@ import { make_errors_figure, make_failures_table } from './test_errors';
 import { get_log_sign } from './variables';
 
 const kSides = ['A', 'B'];
-const kSignificance = 0.05; // as in src/study/statistics/significance.hpp
+const kFewestPairs = 6; // as in src/study/statistics/significance.hpp
 
 function are_same(a: Quantity | null, b: Quantity | null): boolean {
   return a !== null && b !== null && a.name === b.name && a.unit === b.unit;
@@ -28,14 +28,22 @@ function are_same(a: Quantity | null, b: Quantity | null): boolean {
 
 // ---------------------------------------------------------------- the headline
 
+// Returns why the results of the runs cannot be compared; "" if they can.
+function find_refusal(data: ComparisonData, runs: ComparedRuns): string {
+  const obstacles = find_obstacles(data.settings);
+  if (obstacles.indexOf('the problem') >= 0) {
+    return describe_obstacles(obstacles);
+  }
+  const [a, b] = [runs.a.headline.quantity, runs.b.headline.quantity];
+  return a !== null && b !== null && !are_same(a, b) ? 'they minimise different quantities' : '';
+}
+
 function describe_result(runs: ComparedRuns): string {
   const [a, b] = [runs.a.headline, runs.b.headline];
   const without = kSides.filter((_, i) => ![a, b][i] || !is_number([a, b][i].value));
   if (without.length > 0) {
-    return `${join_names(without)} ${without.length === 1 ? 'has' : 'have'} no result on the test set yet, so no side is better.`;
-  }
-  if (!are_same(a.quantity, b.quantity)) {
-    return 'The runs minimise different quantities, so no side is better.';
+    const yet = without.some((side) => (side === 'A' ? runs.a : runs.b).finished) ? '' : ' yet';
+    return `${join_names(without)} ${without.length === 1 ? 'has' : 'have'} no result on the test set${yet}, so no side is better.`;
   }
   const shown = get_shown(a.quantity as Quantity);
   const unit = shown.unit === '' || shown.unit === '1' ? '' : ' ' + shown.unit;
@@ -64,10 +72,14 @@ function describe_pairs({ paired }: ComparedRuns): string {
   if (paired === null || paired.cases < 2) {
     return '';
   }
-  const { wins, losses, cases, p } = paired;
-  const lead = wins >= losses ? `A is better in ${wins}` : `B is better in ${losses}`;
-  const decided = p < kSignificance ? 'the test cases tell the winners apart' : 'the test cases do not tell the winners apart';
-  return `Case by case, ${lead} of ${cases}; ${decided} (signed-rank test, p ${format_p(p).replace(/^(?=\d)/, '= ')}).`;
+  const { wins, losses, cases, p, better } = paired;
+  const counts = `A is better in ${wins} of ${cases} and B in ${losses}`;
+  if (cases < kFewestPairs) {
+    return `Case by case, ${counts}: not enough cases to decide; at least ${kFewestPairs} are needed.`;
+  }
+  const decision =
+    better === null ? 'the cases do not tell the winners apart' : `by the ranks of the differences, ${better.toUpperCase()} is better`;
+  return `Case by case, ${counts}; ${decision} (signed-rank test, p ${format_p(p).replace(/^(?=\d)/, '= ')}).`;
 }
 
 function describe_basis(data: ComparisonData, same_cases: boolean): string {
@@ -75,20 +87,24 @@ function describe_basis(data: ComparisonData, same_cases: boolean): string {
   if (obstacles.length === 0) {
     return 'The runs are comparable: problem, test set, engine and budget are the same.';
   }
-  const differ = `${join_names(obstacles)} ${obstacles.length === 1 ? 'differs' : 'differ'}`;
+  const differ = describe_obstacles(obstacles);
   return same_cases && obstacles.every((one) => one === 'the budget')
     ? `Both winners were tested on the same cases, but ${differ}.`
     : `Compare with care: ${differ}.`;
 }
 
 function make_headline(data: ComparisonData, runs: ComparedRuns): TextItem {
-  const details = [describe_pairs(runs), describe_failures(runs), describe_basis(data, runs.same_cases)];
+  const refusal = find_refusal(data, runs);
+  const details = refusal !== '' ? [] : [describe_pairs(runs), describe_failures(runs), describe_basis(data, runs.same_cases)];
   return {
     kind: 'text',
     id: 'headline',
     title: 'Which one is better',
     style: 'headline',
-    paragraphs: [describe_result(runs), details.filter((text) => text !== '').join(' ')],
+    paragraphs: [
+      refusal !== '' ? `The results of the runs cannot be compared: ${refusal}.` : describe_result(runs),
+      details.filter((text) => text !== '').join(' '),
+    ].filter((text) => text !== ''),
   };
 }
 
@@ -317,7 +333,7 @@ export function make_compared_run_tabs(data: ComparisonData, runs: ComparedRuns)
   const robot = set ? data.robots[set.robot] : undefined;
   const test = join_errors(runs);
   const errors = test === null ? null : make_errors_figure(test);
-  const course = make_course_figure(runs);
+  const course = find_refusal(data, runs) !== '' ? null : make_course_figure(runs);
   const both = (make_one: (run: RunData, side: string) => Item | null): (Item | null)[] => [make_one(runs.a, 'A'), make_one(runs.b, 'B')];
   return keep_filled([
     {

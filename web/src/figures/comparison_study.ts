@@ -4,7 +4,14 @@ import { join_names, shorten, shorten_all } from '../charts/names';
 import type { ComparedCell, ComparedStudies, ComparisonData, StudyData, StudyProblem } from '../data';
 import type { Cell, Figure, Item, Tab, TableItem, TextItem, Value } from '../model';
 import { format_number } from '../numbers';
-import { describe_change, find_differences, find_obstacles, make_differences_table, make_equal_table } from './comparison_parts';
+import {
+  describe_change,
+  describe_obstacles,
+  find_differences,
+  find_obstacles,
+  make_differences_table,
+  make_equal_table,
+} from './comparison_parts';
 import { count_of, is_number } from './quantities';
 import { keep_filled } from './run_page';
 import { make_headline as make_study_headline } from './study_headline';
@@ -26,6 +33,10 @@ const kStates: { [verdict in Verdict]: { text: string; mark: NonNullable<Cell['m
   untested: { text: '? no test', mark: 'none' },
 };
 
+function describe_verdict(cell: ComparedCell): string {
+  return kStates[get_verdict(cell)].text + (cell.untested === null ? '' : `: ${cell.untested}`);
+}
+
 // ---------------------------------------------------------------- the headline
 
 function count(cells: ComparedCell[], verdict: Verdict): number {
@@ -44,21 +55,39 @@ function list_wins(cells: ComparedCell[], side: 'a' | 'b'): string {
   return `${side.toUpperCase()} is better for ${join_names(shown)}`;
 }
 
-function describe_result(cells: ComparedCell[]): string {
-  if (cells.length === 0) {
+// Returns why there is nothing to compare.
+function describe_nothing(data: ComparisonData, { a, b }: ComparedStudies): string {
+  const value = find_differences(data.settings).filter((one) => one.name === 'value')[0];
+  if (value !== undefined) {
+    return `The studies cannot be compared, because the values of their runs have different meanings: ${value.a} in A, ${value.b} in B.`;
+  }
+  const both = a.problems.filter((one) => b.problems.some((other) => other.label === one.label));
+  if (both.length === 0 || !a.optimizers.some((one) => b.optimizers.some((other) => other.label === one.label))) {
     return 'The studies have no optimizer and problem in common, so there is nothing to compare.';
   }
-  if (count(cells, 'untested') === cells.length) {
-    return 'The replicates of the studies form no pairs, so no test can tell them apart.';
+  return 'The studies cannot be compared, because no problem that both have has values with the same meaning.';
+}
+
+function describe_result(data: ComparisonData, studies: ComparedStudies): string {
+  const { cells } = studies;
+  if (cells.length === 0) {
+    return describe_nothing(data, studies);
   }
+  const untested = cells.filter((cell) => get_verdict(cell) === 'untested');
+  const reasons = join_names(untested.map((cell) => cell.untested ?? '').filter((one, i, all) => all.indexOf(one) === i));
+  if (untested.length === cells.length) {
+    return `No test can tell the studies apart: ${reasons}.`;
+  }
+  const others = untested.length === 0 ? '' : ` ${count_of(untested.length, 'result')} without a test: ${reasons}.`;
+  const tested = cells.length - untested.length;
+  const common = untested.length === 0 ? 'both have' : tested === 1 ? 'has a test' : 'have a test';
   const clauses = (['a', 'b'] as const).filter((side) => count(cells, side) > 0).map((side) => list_wins(cells, side));
-  const tested = cells.length - count(cells, 'untested');
   const open = count(cells, 'open');
   if (clauses.length === 0) {
-    return `No result of A can be told apart from that of B, for ${tested === 1 ? 'the one optimizer and problem' : `all ${tested} pairs of optimizer and problem`} that both have.`;
+    return `No result of A can be told apart from that of B, for ${tested === 1 ? 'the one optimizer and problem that' : `all ${tested} pairs of optimizer and problem that`} ${common}.${others}`;
   }
   const rest = open === 0 ? '' : `; the other ${open === 1 ? 'result' : open + ' results'} cannot be told apart`;
-  return clauses.join('; ') + rest + '.';
+  return clauses.join('; ') + rest + '.' + others;
 }
 
 function describe_basis(data: ComparisonData): string {
@@ -70,7 +99,7 @@ function describe_basis(data: ComparisonData): string {
   return obstacles.length === 0
     ? `The studies are comparable: problems, test sets, engines and budget are the same. ${count_of(differences.length, 'other setting')} ` +
         `${differences.length === 1 ? 'differs' : 'differ'}.`
-    : `Compare with care: ${join_names(obstacles)} ${obstacles.length === 1 ? 'differs' : 'differ'}.`;
+    : `Compare with care: ${describe_obstacles(obstacles)}.`;
 }
 
 function describe_common({ a, b }: ComparedStudies): string {
@@ -93,7 +122,7 @@ function make_headline(data: ComparisonData, studies: ComparedStudies): TextItem
     id: 'headline',
     title: 'Which one is better',
     style: 'headline',
-    paragraphs: [describe_result(studies.cells), [describe_basis(data), describe_common(studies)].filter((text) => text !== '').join(' ')],
+    paragraphs: [describe_result(data, studies), [describe_basis(data), describe_common(studies)].filter((text) => text !== '').join(' ')],
   };
 }
 
@@ -123,7 +152,7 @@ function make_grid_figure(cells: ComparedCell[]): Figure | null {
   const describe = (cell: ComparedCell): string =>
     `${shorten(cell.optimizer)} on ${shorten(cell.problem)}; A ${describe_side(cell.a, cell)}, B ${describe_side(cell.b, cell)}; ` +
     (cell.p_holm === null ? '' : `p = ${format_p(cell.p_holm)} after Holm; `) +
-    kStates[get_verdict(cell)].text.slice(2);
+    describe_verdict(cell).slice(2);
   return {
     kind: 'figure',
     id: 'compared-grid',
@@ -162,7 +191,7 @@ export function make_grid(cells: ComparedCell[]): TableItem | null {
       'Medians with the quartiles of the replicates. The test is the signed-rank test of the pairs of replicates with the same number, ' +
       "with Holm's correction over all rows; only where p is below 0.05 the sides are told apart. " +
       'A12 is the probability that a run of A is better than a run of B: 0.5 is no difference. ' +
-      'Replicates form pairs if both studies draw them from the same seed.',
+      'Replicates form pairs if both studies have the same seed, spread of starts, and settings of the problem.',
     table: {
       columns: [
         { label: 'problem' },
@@ -177,12 +206,11 @@ export function make_grid(cells: ComparedCell[]): TableItem | null {
         { label: 'pairs', numeric: true },
       ],
       rows: cells.map((cell): (Value | Cell)[] => {
-        const { text, mark } = kStates[get_verdict(cell)];
         const overlap = do_quartiles_overlap(cell);
         return [
           cell.problem,
           cell.optimizer,
-          { value: text, mark },
+          { value: describe_verdict(cell), mark: kStates[get_verdict(cell)].mark },
           describe_side(cell.a, cell),
           describe_side(cell.b, cell),
           is_number(cell.a.median) && is_number(cell.b.median) ? describe_change(cell.a.median, cell.b.median) : '',
@@ -207,7 +235,11 @@ export function join_studies({ a, b }: ComparedStudies): Scope | null {
   a.problems.forEach((problem) => {
     const other = b.problems.filter((one) => one.label === problem.label)[0];
     const same =
-      other !== undefined && String(other.checkpoints) === String(problem.checkpoints) && other.quantity.name === problem.quantity.name;
+      other !== undefined &&
+      !problem.has_front &&
+      !other.has_front &&
+      String(other.checkpoints) === String(problem.checkpoints) &&
+      other.quantity.name === problem.quantity.name;
     if (same && common.length > 0) {
       const results = [...places[0].map((o) => problem.results[o]), ...places[1].map((o) => other.results[o])];
       const order: number[] = [];
