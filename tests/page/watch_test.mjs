@@ -1,11 +1,12 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { cpSync, existsSync, rmSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import http from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { open_browser, open_page } from './browser.mjs';
 import { kFolder } from './make_pages.mjs';
+import { start_watch } from './pages.mjs';
 
 let browser;
 let served;
@@ -133,6 +134,74 @@ test('the page of a study in progress has the cells that are running', async () 
   await page.close();
   await end(watched.worker, 'SIGTERM');
   assert.equal(await end(watched.server, 'SIGINT'), 0);
+});
+
+// Writes what another process, which runs the missing cell, would write.
+function write_attempt(attempt, file, content) {
+  mkdirSync(attempt, { recursive: true });
+  writeFileSync(join(attempt, file + '.new'), content);
+  renameSync(join(attempt, file + '.new'), join(attempt, file));
+}
+
+test('an update of the progress touches nothing else', async (t) => {
+  const { address: its_address, stop } = await start_watch('watched-for-updates');
+  t.after(stop);
+  const attempt = join(kFolder, 'watched-for-updates', kCell.replace('cells', 'attempts'), '001');
+  const { page, expect_no_faults } = await open_page(browser, its_address);
+  const running = page.locator('[data-figure=running]');
+  assert.match(await running.innerText(), /No cell is running\./);
+  assert.match(await page.locator('[data-figure=failures-so-far]').innerText(), /Nothing has failed\.|diverged/);
+  await page.waitForFunction(() => document.querySelectorAll('.cards svg').length > 0);
+
+  // The reader scrolls a table to its end and moves the focus to a heading. Then the page is observed.
+  await page.evaluate(() => {
+    const box = document.querySelector('[data-figure]:not([data-figure=failures-so-far]) .table-scroll');
+    box.style.maxWidth = '100px'; // so that it is cut
+    box.scrollLeft = 15;
+    box.querySelector('th button').focus({ preventScroll: true });
+    window.kept = { box, focus: document.activeElement, changed: [] };
+  });
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await page.evaluate(() => {
+    new MutationObserver((records) => {
+      for (const { target } of records) {
+        const element = target.nodeType === Node.ELEMENT_NODE ? target : target.parentElement;
+        const id = element?.closest('[data-figure]')?.dataset.figure ?? element?.className;
+        if (id !== 'running' && id !== 'failures-so-far' && id !== 'cards') {
+          window.kept.changed.push(id);
+        }
+      }
+    }).observe(document.querySelector('#panel'), { subtree: true, childList: true, characterData: true, attributes: true });
+  });
+  const look = () =>
+    page.evaluate(() => ({
+      changed: [...new Set(window.kept.changed)],
+      scroll: window.kept.box.isConnected && window.kept.box.scrollLeft,
+      focus: document.activeElement === window.kept.focus,
+    }));
+  const unchanged = { changed: [], scroll: 15, focus: true };
+  assert.deepEqual(await look(), unchanged);
+
+  const owner = { format: 1, host: 'elsewhere', pid: 7, job: '', started: '2026-01-01T00:00:00Z', process_begun_s: 1 };
+  write_attempt(attempt, 'attempt.json', JSON.stringify(owner));
+  write_attempt(attempt, 'alive', '{"cases":10}');
+  await running.locator('tbody tr', { hasText: /r06.*process 7 on elsewhere/s }).waitFor();
+  assert.deepEqual(await look(), unchanged);
+
+  // The rows change, and the order of the reader and the focus stay.
+  await running.getByRole('button', { name: 'cell' }).click();
+  await page.evaluate(() => (window.kept.focus = document.activeElement));
+  write_attempt(attempt, 'alive', '{"cases":20}');
+  await running.locator('tbody td', { hasText: /^20$/ }).waitFor();
+  assert.deepEqual(await look(), unchanged);
+  assert.equal(await running.locator('th[aria-sort=ascending]').count(), 1);
+
+  write_attempt(attempt, 'error.txt', 'the disk is full\n');
+  await page.locator('[data-figure=failures-so-far] tbody tr', { hasText: 'the disk is full' }).waitFor();
+  assert.match(await running.innerText(), /No cell is running\./);
+  assert.deepEqual({ ...(await look()), focus: true }, unchanged);
+  expect_no_faults();
+  await page.close();
 });
 
 test('data that have not changed are not sent again', async () => {

@@ -451,20 +451,16 @@ test('the words beside the progress bar say what is known', () => {
   ]);
 });
 
-test('a watched page has the running cells first and the failures after the headline', () => {
-  const data = { ...make_run_data(), finished: false, progress: { done: 0, total: 4, unit: 'cells' } };
+test('a watched page of a run has the failures after the headline, or says that there is none', () => {
+  const data = { ...make_run_data(), finished: false, progress: { done: 0, total: 4, unit: 'cases' } };
   const ids = () => make_page(data).tabs[0].items.map((item) => item.id);
   const usual = ids();
-  data.watched = {
-    simulations: 9,
-    per_second: 1,
-    left_s: 1,
-    running: [{ cell: 'q1/ga/r01', process: 'process 7 on host', done: 25, total: 100 }],
-    failed_evaluations: 1,
-    failures: [{ where: 'evaluation 3', state: 'diverged', reason: 'joint_2 moves at 1e9 rad/s' }],
-  };
-  assert.deepEqual(ids(), ['running', usual[0], 'failures-so-far', ...usual.slice(1)]);
-  assert.deepEqual(find(data, 'running').table.rows, [['q1/ga/r01', 25, 100, 25, 'process 7 on host']]);
+  data.watched = { simulations: 9, per_second: 1, left_s: 1, running: [], failed_evaluations: 0, failures: [] };
+  assert.deepEqual(ids(), [usual[0], 'failures-so-far', ...usual.slice(1)]);
+  assert.deepEqual(find(data, 'failures-so-far').paragraphs, ['Nothing has failed.']);
+  data.watched.failures = [{ where: 'evaluation 3', state: 'diverged', reason: 'joint_2 moves at 1e9 rad/s' }];
+  assert.deepEqual(ids(), [usual[0], 'failures-so-far', ...usual.slice(1)]);
+  assert.deepEqual(find(data, 'failures-so-far').table.rows, [['evaluation 3', 'diverged', 'joint_2 moves at 1e9 rad/s']]);
   data.finished = true;
   assert.deepEqual(ids(), usual);
 });

@@ -104,6 +104,9 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
   let page: Page | null = null;
   let shown_data: PageData | null = null;
   let views: View[] = [];
+  let contents: string[] = []; // that the views show
+  let figures_key = ''; // the data and the filter, from which figures are drawn
+  let figures_version = 0; // counts the changes of figures_key
   let open = '';
 
   const title = make('h1');
@@ -140,11 +143,28 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
   function close(): void {
     views.forEach((view) => view.dispose());
     views = [];
+    contents = [];
     panel.replaceChildren();
   }
 
+  // The content of an item, as a text that can be compared. Figures are functions: they draw the
+  // same as long as the data and the filter are the same.
+  function describe_content(item: Item): string {
+    if (item.kind === 'replay') {
+      return ''; // a recorded motion does not change
+    }
+    return JSON.stringify(item) + (item.kind === 'figure' ? figures_version : '');
+  }
+
+  // An item with the same content is not touched, so that its scroll position, the keyboard's focus
+  // and the rows that the reader asked for stay.
   function update_or_replace(item: Item, index: number): void {
-    if (page !== null && !views[index].update(item)) {
+    const content = describe_content(item);
+    if (page === null || contents[index] === content) {
+      return;
+    }
+    contents[index] = content;
+    if (!views[index].update(item)) {
       const newer = make_view(page, item, look, clock);
       views[index].element.replaceWith(newer.element);
       views[index].dispose();
@@ -171,6 +191,7 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
     for (const item of tab.items) {
       const view = make_view(page, item, look, clock);
       views.push(view);
+      contents.push(describe_content(item));
       grid.append(view.element);
     }
   }
@@ -247,7 +268,12 @@ export function make_page_view(host: HTMLElement, first_look: Look, events: Page
   function show(data: PageData): void {
     shown_data = data;
     filter.element.hidden = data.kind !== 'study' || data.optimizers.length < kFewestToFilter;
-    const next = make_page(data, data.kind === 'study' ? filter.apply(data) : undefined);
+    const filtered = data.kind === 'study' ? filter.apply(data) : undefined;
+    const next = make_page(data, filtered);
+    // The data of a page that is not watched do not change.
+    const key = JSON.stringify([data.watched === null ? null : { ...data, progress: null, watched: null }, filtered]);
+    figures_version += key === figures_key ? 0 : 1;
+    figures_key = key;
     page = next;
     document.title = data.title;
     title.textContent = data.title;

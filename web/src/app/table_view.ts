@@ -63,7 +63,14 @@ interface Order {
   direction: number;
 }
 
-function make_table(title: string, table: DataTable, details: HTMLElement, order: Order = { column: -1, direction: 1 }): HTMLElement {
+// A table in its box. `set_rows` takes other rows of the same columns; the head, the order, the number
+// of rows that the reader asked for and the scroll position stay.
+interface TableBox {
+  element: HTMLElement;
+  set_rows(rows: DataTable['rows']): void;
+}
+
+function make_table(title: string, table: DataTable, details: HTMLElement, order: Order = { column: -1, direction: 1 }): TableBox {
   const body = make('tbody');
   const headings: HTMLTableCellElement[] = [];
   let rows = table.rows;
@@ -84,7 +91,12 @@ function make_table(title: string, table: DataTable, details: HTMLElement, order
     order.direction = direction;
     headings.forEach((heading) => heading.removeAttribute('aria-sort'));
     headings[column].setAttribute('aria-sort', direction > 0 ? 'ascending' : 'descending');
-    rows = rows.slice().sort((a, b) => compare(get_value(a[column]), get_value(b[column]), direction));
+    set_rows(rows);
+  }
+
+  function set_rows(next: DataTable['rows']): void {
+    const { column, direction } = order;
+    rows = column < 0 ? next : next.slice().sort((a, b) => compare(get_value(a[column]), get_value(b[column]), direction));
     const enough = Math.max(shown, kPortion);
     body.replaceChildren();
     shown = 0;
@@ -110,7 +122,7 @@ function make_table(title: string, table: DataTable, details: HTMLElement, order
   } else {
     show(kPortion);
   }
-  return make_cut_box(title, [make('table', {}, make('thead', {}, head), body), more]);
+  return { element: make_cut_box(title, [make('table', {}, make('thead', {}, head), body), more]), set_rows };
 }
 
 export function make_table_view(item: TableItem): View {
@@ -132,7 +144,7 @@ export function make_table_view(item: TableItem): View {
         make_button('CSV', () => download(item.id + '.csv', 'text/csv', to_csv(table)), { title: 'Download this table' }),
       ),
     ),
-    body,
+    body.element,
     details,
     item.caption ? make('p', { class: 'caption' }, ...make_text(item.caption)) : null,
   );
@@ -143,10 +155,15 @@ export function make_table_view(item: TableItem): View {
       if (next.kind !== 'table' || next.table.columns.length !== table.columns.length) {
         return false;
       }
+      const has_same_head = JSON.stringify(next.table.columns) === JSON.stringify(table.columns);
       table = next.table;
-      const newer = make_table(item.title, table, details, order);
-      body.replaceWith(newer);
-      body = newer;
+      if (has_same_head) {
+        body.set_rows(table.rows);
+      } else {
+        const newer = make_table(item.title, table, details, order);
+        body.element.replaceWith(newer.element);
+        body = newer;
+      }
       return true;
     },
     settle() {},
@@ -165,7 +182,7 @@ export function show_table(title: string, table: DataTable): void {
       make('h3', {}, title),
       make_button('Close', () => dialog.close(), { class: 'close-dialog' }),
     ),
-    make_table(title, table, details),
+    make_table(title, table, details).element,
     details,
   );
   dialog.addEventListener('close', () => dialog.remove());

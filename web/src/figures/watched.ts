@@ -1,6 +1,6 @@
 // The progress of a run or study that is not finished: words for the bar on top of the page, and the
 // tables that `armwright watch` adds to the first tab.
-import type { PageBase, Watched } from '../data';
+import type { PageBase, PageData, Watched } from '../data';
 import type { Item, TableItem } from '../model';
 import { format_duration, format_number } from '../numbers';
 
@@ -71,16 +71,22 @@ function make_failure_table(watched: Watched): TableItem {
   };
 }
 
-// Returns the items of the first tab with the tables of a page that is being watched: cells that are
-// running come first, failures after the headline.
-export function add_watched_items({ finished, watched }: PageBase, items: Item[]): Item[] {
+// A table without rows is one sentence. It has the same place, so that nothing below it moves.
+function make_slot(table: TableItem, empty: string): Item {
+  const { id, title } = table;
+  return table.table.rows.length > 0 ? table : { kind: 'text', id, title, paragraphs: [empty] };
+}
+
+// Returns the items of the first tab with the tables of a page that is being watched: a study's cells
+// that are running come first, failures after the headline.
+export function add_watched_items({ finished, kind, watched }: PageData, items: Item[]): Item[] {
   if (finished || watched === null) {
     return items;
   }
   return [
-    ...(watched.running.length > 0 ? [make_running_table(watched)] : []),
+    ...(kind === 'study' ? [make_slot(make_running_table(watched), 'No cell is running.')] : []),
     ...items.slice(0, 1),
-    ...(watched.failures.length > 0 ? [make_failure_table(watched)] : []),
+    make_slot(make_failure_table(watched), 'Nothing has failed.'),
     ...items.slice(1),
   ];
 }
