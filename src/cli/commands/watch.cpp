@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <optional>
 
 #include "base/stop_signal.hpp"
 #include "base/text.hpp"
@@ -63,8 +64,9 @@ int run_watch(const WatchOptions& options, Session& session) {
   try {
     const std::string first = make_data();  // throws now if there is nothing to show
     PageServer server(port, get_page_title(first), make_data);
+    std::optional<OpenedAddress> opened;
     if (!options.no_open) {
-      open_in_browser(server.url());
+      opened.emplace(server.url());
     }
     write_stdout(
         fmt::format("{} shows {}; Ctrl-C ends it\n", server.url(), sanitize(options.folder)));
