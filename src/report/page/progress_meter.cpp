@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <system_error>
 
 #include "base/error.hpp"
 #include "base/folder.hpp"
@@ -69,23 +70,41 @@ std::optional<double> RateEstimate::calc_left_s() const {
          (now.work - first_->work);
 }
 
-const ProgressMeter::Counted& ProgressMeter::count(const std::filesystem::path& journal,
-                                                   const RecordedEvaluations& training,
-                                                   const std::string& name) {
-  Counted& counted = journals_[journal];
+const ProgressMeter::Counted& ProgressMeter::count(const std::string& name,
+                                                   const RecordedEvaluations& training) {
+  Counted& counted = counted_[name];
   if (training.size() < counted.evaluations) {
-    counted = {};  // another attempt began
+    // Another attempt began without these evaluations.
+    counted.evaluations = 0;
+    counted.simulations = 0;
+    counted.failed = 0;
   }
   for (; counted.evaluations < training.size(); ++counted.evaluations) {
     const EvaluationRecord record = training[counted.evaluations];
     counted.simulations += record.calc_charge();
-    if (has_failed(record.evaluation.status)) {
-      ++counted.failed;
+    if (!has_failed(record.evaluation.status)) {
+      continue;
+    }
+    ++counted.failed;
+    if (counted.listed.insert(record.index).second) {
       failures_.push_front(make_failure(
           fmt::format("{}evaluation {}", name.empty() ? "" : name + ", ", record.index + 1),
           to_string(record.evaluation.status), record.evaluation.reason));
       failures_.resize(std::min(failures_.size(), kMostFailures));
     }
+  }
+  return counted;
+}
+
+const ProgressMeter::Counted& ProgressMeter::count_cell(const std::string& name,
+                                                        const std::filesystem::path& journal) {
+  Counted& counted = counted_[name];
+  std::error_code ignored;
+  const std::uintmax_t bytes = std::filesystem::file_size(journal, ignored);
+  if (journal != counted.journal || bytes != counted.bytes) {
+    count(name, read_journal(journal).training);
+    counted.journal = journal;
+    counted.bytes = bytes;
   }
   return counted;
 }
@@ -104,7 +123,7 @@ json ProgressMeter::make(double simulations, double work, double total) {
 }
 
 json ProgressMeter::observe_run(const RecordedRun& run) {
-  const Counted& counted = count(run.folder / "journal", run.journal.training, "");
+  const Counted& counted = count("", run.journal.training);
   const auto done = static_cast<double>(counted.simulations);
   json watched = make(done, done, static_cast<double>(run.budget));
   watched["failed_evaluations"] = counted.failed;
@@ -123,6 +142,7 @@ json ProgressMeter::observe_study(const StudyPlan& plan, std::span<const CellOut
   }
   // A cell that ends early has used its budget as far as the time left is concerned.
   double work = budget * static_cast<double>(ended.size());
+  double total = budget * static_cast<double>(list_cells(plan).size());
   json running = json::array();
   json failures = json::array();
   for (const CellStatus& one : status.notable) {
@@ -132,13 +152,20 @@ json ProgressMeter::observe_study(const StudyPlan& plan, std::span<const CellOut
                                      ? describe_holder(one) + " gives no sign of life"
                                      : one.error;
       failures.push_back(make_failure(name, to_string(one.state), reason));
+      if (one.state != CellState::failed) {  // a failed cell is one of those that have ended
+        const auto cases = static_cast<double>(one.attempt ? one.attempt->cases.value_or(0) : 0);
+        simulations += cases;
+        work += std::min(cases, budget);
+        // Nothing is left to do in a cell that an error ended.
+        total -= one.state == CellState::broken ? budget - std::min(cases, budget) : 0;
+      }
       continue;
     }
     json done = nullptr;
     const auto journal = find_run(plan, one, study) / "journal";
     try {
       if (path_exists(journal)) {
-        const Counted& counted = count(journal, read_journal(journal).training, name);
+        const Counted& counted = count_cell(name, journal);
         done = counted.simulations;
         failed += counted.failed;
       }
@@ -156,7 +183,7 @@ json ProgressMeter::observe_study(const StudyPlan& plan, std::span<const CellOut
                        {"done", std::move(done)},
                        {"total", plan.budget}});
   }
-  json watched = make(simulations, work, budget * static_cast<double>(list_cells(plan).size()));
+  json watched = make(simulations, work, total);
   watched["running"] = std::move(running);
   watched["failed_evaluations"] = failed;
   watched["failures"].insert(watched["failures"].begin(), failures.begin(), failures.end());

@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 
@@ -53,22 +54,29 @@ class ProgressMeter {
   nlohmann::json observe_results(std::size_t done, std::size_t total);
 
  private:
-  // The evaluations of a journal that were read so far. Journals only grow.
+  // The evaluations of a cell or run that were counted so far, over all attempts at it.
   struct Counted {
+    std::filesystem::path journal;  // of the newest attempt
+    std::uintmax_t bytes = 0;       // its size when it was read last
     std::size_t evaluations = 0;
     std::uint64_t simulations = 0;
     std::uint64_t failed = 0;
+    std::set<std::uint64_t> listed;  // evaluations that were once in failures_, by index
   };
 
-  // Reads what is new. `name` is that of the cell, or empty.
-  const Counted& count(const std::filesystem::path& journal, const RecordedEvaluations& training,
-                       const std::string& name);
+  // Counts the evaluations behind those that were counted before. `name` is that of the cell, or
+  // empty for a run.
+  const Counted& count(const std::string& name, const RecordedEvaluations& training);
+  // Does the same for a journal of the cell. Does not open a journal whose size is the same as
+  // before. Otherwise reads the whole journal, but simulations and failures only behind those that
+  // were counted. Throws Error.
+  const Counted& count_cell(const std::string& name, const std::filesystem::path& journal);
   nlohmann::json make(double simulations, double work, double total);
 
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   RateEstimate rate_;
-  std::map<std::filesystem::path, Counted> journals_;
-  std::deque<nlohmann::json> failures_;  // of candidates, the newest ones, newest first
+  std::map<std::string, Counted> counted_;  // by the name of the cell; "" for a run
+  std::deque<nlohmann::json> failures_;     // of candidates, the newest ones, newest first
 };
 
 }  // namespace armwright
