@@ -272,6 +272,14 @@ TEST_F(Doctor, AnIntactFolderIsNotCopied) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "run.repaired"));
 }
 
+TEST_F(Doctor, NamesDamagedTimesWhichHarmNothing) {
+  ASSERT_EQ(run(make_run("run", "ga", "70")).exit_code, 0);
+  std::ofstream(folder_ / "run/times.json") << "{";
+  const Outcome outcome = doctor({"run"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("times.json"), HasSubstr("no time taken")));
+}
+
 TEST_F(Doctor, TellsWhatTheMachineHas) {
   const Outcome outcome = doctor({});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out;

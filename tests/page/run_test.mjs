@@ -205,10 +205,10 @@ test('the arm is seen from above, and its links have the colours of torques or o
       }
       return orange / (data.length / 4);
     });
+  // A change asks for the next frame, so the picture has followed it after that frame.
   const draw = async (change) => {
-    const { frames } = await get_state(page);
     await change();
-    await page.waitForFunction((before) => window.armwright_replay.state.frames > before, frames);
+    await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
     return count_orange();
   };
   const from_side = await draw(() => page.getByRole('button', { name: 'Side' }).click());
@@ -216,8 +216,7 @@ test('the arm is seen from above, and its links have the colours of torques or o
   assert.ok(from_above > 0.001 && Math.abs(from_above - from_side) > 0.1 * from_side, `${from_above} and ${from_side}`);
   const select = page.locator('.replay label', { hasText: /^Arm/ }).locator('select');
   for (const paint of ['torque', 'position']) {
-    await select.selectOption('robot');
-    const before = await count_orange();
+    const before = await draw(() => select.selectOption('robot'));
     const after = await draw(() => select.selectOption(paint));
     assert.ok(after < 0.6 * before, `${paint}: ${after} after ${before}`);
     assert.equal(await page.locator('.replay-paints > span').count(), 6);

@@ -28,7 +28,7 @@ export interface Program {
 }
 
 export interface PageBase {
-  format: 1;
+  format: 2; // kPageFormat
   title: string;
   subtitle: string;
   program: Program;

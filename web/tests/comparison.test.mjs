@@ -22,7 +22,7 @@ const kSettings = [
 function make_comparison(parts) {
   const { facts, program, robots } = make_run_data();
   return {
-    ...{ format: 1, kind: 'comparison', title: 'A: x – B: y', subtitle: '', program, folder: 'x and y', command: 'armwright report x y' },
+    ...{ format: 2, kind: 'comparison', title: 'A: x – B: y', subtitle: '', program, folder: 'x and y', command: 'armwright report x y' },
     ...{
       finished: true,
       progress: null,

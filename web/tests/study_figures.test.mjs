@@ -477,10 +477,10 @@ test('the headline names the optimizers that failed, and those without a value',
   set(3, 0, 2);
   assert.equal(
     get_failures(),
-    `Failed by a fault of their own: b in 4 of ${runs} runs. Without a value on the test set: d in 4 of ${runs} runs and c in 2 of ${runs} runs.`,
+    `Failed by a fault of their own: b in 4 of ${runs} runs. Without a value on the test set, because a simulation failed or a constraint is violated: d in 4 of ${runs} runs and c in 2 of ${runs} runs.`,
   );
   set(1, 0, 0);
-  assert.match(get_failures(), /^No optimizer failed\. Without a value on the test set: d in 4 of/);
+  assert.match(get_failures(), /^No optimizer failed\. Without a value on the test set, because .*: d in 4 of/);
 });
 
 test('the headline claims nothing where the verdict decides nothing', () => {

@@ -21,7 +21,8 @@ void PageInput::add_to(CLI::App& command) {
       .add_option(
           "--case", cases,
           "Also show the motion in this case, as in test/2:17; repeatable (shown without it: the "
-          "median test case, the 95th percentile, the worst, up to three failures, the first, and a "
+          "median test case, the 95th percentile, the worst, up to three failures, the first, and "
+          "a "
           "training case)")
       ->type_name("SET:NUMBER")
       ->allow_extra_args(false);

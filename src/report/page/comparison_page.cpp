@@ -16,6 +16,7 @@
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/recorded_run.hpp"
 #include "report/page/page_data.hpp"
+#include "report/page/page_file.hpp"
 #include "study/analysis/study_result.hpp"
 #include "study/compare/study_folder.hpp"
 
@@ -226,7 +227,7 @@ json make_frame(const Folders& folders, const json& a, const json& b, json setti
   const auto names = std::array{name_folder(folders[0]), name_folder(folders[1])};
   const std::vector<std::string> again = {"armwright", "report", folders[0].string(),
                                           folders[1].string()};
-  return {{"format", 1},
+  return {{"format", kPageFormat},
           {"kind", "comparison"},
           {"title", fmt::format("A: {} – B: {}", sanitize(names[0]), sanitize(names[1]))},
           {"subtitle", fmt::format("A: {} – B: {}", a.at("title").get<std::string>(),

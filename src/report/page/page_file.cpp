@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+
 #include "base/base64.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
@@ -83,7 +85,15 @@ std::string read_page_data(const std::filesystem::path& page) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("{}: is not a page that armwright report wrote", page.string()));
   }
-  return html.substr(begin, end - begin);
+  std::string data = html.substr(begin, end - begin);
+  const auto parsed = nlohmann::json::parse(data, nullptr, false);
+  if (!parsed.is_object() || parsed.value("format", nlohmann::json()) != kPageFormat) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: was written by another version of armwright; make the page again "
+                            "with armwright report",
+                            page.string()));
+  }
+  return data;
 }
 
 }  // namespace armwright

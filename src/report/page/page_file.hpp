@@ -27,9 +27,13 @@ PageAssets get_page_assets();
 std::string make_page_html(std::string_view title, std::string_view data,
                            std::string_view live_tag = {});
 
+// "format" of the data. It changes when the page needs keys that earlier data do not have.
+inline constexpr int kPageFormat = 2;
+
 // Returns whether make_page_html() made a file.
 bool is_page_file(const std::filesystem::path& file);
-// Returns the data in such a file. Throws Error{bad_data} if the file is no such page; Error{io}.
+// Returns the data in such a file. Throws Error{bad_data} if the file is no such page or its data have
+// another format; Error{io}.
 std::string read_page_data(const std::filesystem::path& page);
 
 }  // namespace armwright

@@ -10,6 +10,7 @@
 #include "report/evidence/distance_response.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/signals.hpp"
+#include "report/page/page_file.hpp"
 #include "report/page/progress_meter.hpp"
 #include "report/page/reproduction_replays.hpp"
 #include "study/run/design_evaluation.hpp"
@@ -70,7 +71,7 @@ class ReproductionPage {
     if (there < planned) {
       progress = {{"done", there}, {"total", planned}, {"unit", "results"}};
     }
-    return {{"format", 1},
+    return {{"format", kPageFormat},
             {"kind", "reproduction"},
             {"title", config_.title},
             {"subtitle", make_subtitle()},

@@ -153,7 +153,7 @@ json make_run_facts(const RecordedRun& run) {
 }
 
 json make_headline(const RecordedRun& run, const History& history) {
-  const auto times = load_times(run.folder);
+  const auto times = find_times(run.folder);
   const std::int64_t cases = history.parts.empty() ? 0 : history.parts.back().cases;
   json headline = {{"started", run.started}, {"evaluations", run.journal.training.size()},
                    {"cases", cases},         {"value", nullptr},

@@ -12,6 +12,7 @@
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/robot_scene.hpp"
 #include "report/page/page_data.hpp"
+#include "report/page/page_file.hpp"
 #include "report/page/progress_meter.hpp"
 #include "report/page/run_parts.hpp"
 #include "study/run/run.hpp"
@@ -173,7 +174,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
                 {"unit", "cases"}};
   }
   json page = {
-      {"format", 1},
+      {"format", kPageFormat},
       {"kind", "run"},
       {"title", fmt::format("{} on {}", shorten_optimizer(optimizer), run.problem_name)},
       {"subtitle", run.problem ? run.problem->title : ""},

@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/page/page_data.hpp"
+#include "report/page/page_file.hpp"
 #include "report/page/progress_meter.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/analysis/final_check.hpp"
@@ -72,7 +73,7 @@ std::optional<std::string> make_study_page(const std::filesystem::path& folder,
   const std::vector<std::string> again = {"armwright", "compare", (folder / "study.toml").string(),
                                           "--out", folder.string()};
   json page = {
-      {"format", 1},
+      {"format", kPageFormat},
       {"kind", "study"},
       {"title", plan.title.empty() ? plan.name : plan.title},
       {"subtitle",

@@ -39,7 +39,7 @@ json make_cell(const StudyPlan& plan, const Cell& cell, const CellOutcome& outco
                const std::filesystem::path& folder) {
   const std::vector<std::string> words = {"armwright", "rerun", folder.string(),
                                           name_cell(plan, cell)};
-  const auto times = load_times(folder / make_cell_path(plan, cell));
+  const auto times = find_times(folder / make_cell_path(plan, cell));
   return {{"replicate", outcome.replicate},
           {"value", finite_or_null(value)},
           {"cases", outcome.cases},

@@ -70,18 +70,22 @@ std::optional<RunTimes> load_times(const std::filesystem::path& folder) {
   }
 }
 
-RunClock::RunClock() : begun_cpu_s_(measure_cpu_s()) {}
-
-void RunClock::add_to(const Folder& folder, bool simulates) const {
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begun_;
-  RunTimes before{.cpu_s = 0};
+std::optional<RunTimes> find_times(const std::filesystem::path& folder) {
   try {
-    before = load_times(folder.path()).value_or(before);
+    return load_times(folder);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::bad_data) {
       throw;
     }
+    return std::nullopt;
   }
+}
+
+RunClock::RunClock() : begun_cpu_s_(measure_cpu_s()) {}
+
+void RunClock::add_to(const Folder& folder, bool simulates) const {
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begun_;
+  const RunTimes before = find_times(folder.path()).value_or(RunTimes{.cpu_s = 0});
   const json times = {
       {"wall_s", round_to_ms(before.wall_s + wall.count())},
       {"cpu_s", simulates && before.cpu_s

@@ -24,6 +24,9 @@ struct RunTimes {
 // Returns the recorded times, or nothing if there are none, as in runs of version 1.0. Throws
 // Error{bad_data} if the file is damaged, and Error{io}.
 std::optional<RunTimes> load_times(const std::filesystem::path& folder);
+// Does the same for readers that can do without the times: returns nothing for a damaged file, which
+// the survey of the run names.
+std::optional<RunTimes> find_times(const std::filesystem::path& folder);
 
 // Measures one life of a run. The processor time is that of this process and of its children that
 // have ended.

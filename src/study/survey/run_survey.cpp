@@ -14,6 +14,7 @@
 #include "study/compare/cell.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run/run_lock.hpp"
+#include "study/run/run_times.hpp"
 #include "study/survey/derived_survey.hpp"
 
 namespace armwright {
@@ -59,6 +60,7 @@ class RunSurveyor {
       }
       check_cell();
     }
+    check_times();
     check_checksums();
     return std::move(survey_);
   }
@@ -315,6 +317,19 @@ class RunSurveyor {
     });
     if (!fault.empty()) {
       add_damaged_file("cell.json", fault);
+    }
+  }
+
+  // Nothing depends on this file, so its damage is only a note.
+  void check_times() {
+    try {
+      load_times(folder_);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::bad_data) {
+        throw;
+      }
+      add(Finding::Kind::note, kTimesFile,
+          "it is damaged, so pages show no time taken; the next life of the run replaces it");
     }
   }
 

@@ -1,12 +1,13 @@
 #include "report/page/page_file.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <fstream>
 #include <regex>
 
 #include "base/base64.hpp"
 #include "base/error.hpp"
+#include "base/expect_error.hpp"
 #include "base/hash.hpp"
 #include "report/page/page_data.hpp"
 
@@ -21,7 +22,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-constexpr const char* kHostile = R"({"title":"</script><script>alert(1)</script><!--"})";
+constexpr const char* kHostile = R"({"format":2,"title":"</script><script>alert(1)</script><!--"})";
 
 TEST(PageFile, DataCannotEndTheirBlock) {
   const std::string harmless = make_page_html("t", R"({"title":""})");
@@ -59,6 +60,16 @@ TEST(PageFile, OnlyAServedPageMayAskForData) {
 
 TEST(PageFile, WithoutDataIsLessThanTwoMegabytes) {
   EXPECT_LT(make_page_html("t", "{}").size(), 2'000'000u);
+}
+
+TEST(PageFile, DataOfAnotherVersionAreRefused) {
+  const std::filesystem::path file = testing::TempDir() + "page_file_version_test.html";
+  for (const char* data : {R"({"title": "t"})", R"({"format": 1})", R"({"format": "2"})", "[2]"}) {
+    std::ofstream(file) << make_page_html("t", data);
+    EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { read_page_data(file); }),
+                testing::HasSubstr("make the page again with armwright report"))
+        << data;
+  }
 }
 
 TEST(PageFile, DataAreReadBack) {

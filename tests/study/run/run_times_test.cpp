@@ -86,6 +86,7 @@ TEST_F(RunTimesTest, ADamagedFileIsNamedAndTheNextLifeReplacesIt) {
     write_times(text);
     EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { load_times(temporary_.path()); }),
                 AllOf(HasSubstr("times.json: "), HasSubstr("remove it")));
+    EXPECT_FALSE(find_times(temporary_.path()));
     RunClock().add_to(Folder(temporary_.path()), true);
     EXPECT_EQ(load_times(temporary_.path())->lives, 1u);
   }

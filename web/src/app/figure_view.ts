@@ -330,7 +330,8 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     { capture: true },
   );
   const on_key = (event: KeyboardEvent): void => {
-    if (event.key === 'Escape' && document.querySelector('dialog[open]') === null) {
+    const is_typing = event.target instanceof HTMLInputElement && event.target.type === 'search';
+    if (event.key === 'Escape' && !is_typing && document.querySelector('dialog[open]') === null) {
       clock.zoom(get_key(), null);
     }
   };

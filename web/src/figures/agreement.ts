@@ -48,14 +48,14 @@ export function grade_agreement(ours: number | null, published: number, standard
 // is listed once.
 function compare_all(data: ReproductionData): Comparison[] {
   const all: Comparison[] = [];
-  const add_torque = (row: { reason: string; command: string }, label: string, published: number | null, ours: number) => {
+  const add_torque = (row: { reason: string; command: string }, label: string, published: number | null, ours: number | null) => {
     if (is_number(published)) {
       const grade = grade_agreement(ours, published, 0);
       all.push({
         label,
         quantity: 'total torque (kN m)',
         published: published * kKilo,
-        ours: ours * kKilo,
+        ours: times(ours, kKilo),
         grade,
         reason: row.reason,
         command: row.command,

@@ -80,7 +80,7 @@ function make_failure_tile(data: RunData): Tile | null {
   return {
     label: 'Failed test cases',
     value: `${failures > 0 ? '✗' : '✓'} ${failures} of ${test_cases}`,
-    detail: is_number(limit) ? `error above ${format_number(limit * kMillimetres)} mm, or none` : '',
+    detail: is_number(limit) ? `error above ${format_number(limit * kMillimetres)} mm, or no result` : '',
     mark: failures > 0 ? 'bad' : 'good',
   };
 }

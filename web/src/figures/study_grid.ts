@@ -270,8 +270,8 @@ export function make_standing_grid(scope: Scope): Figure | null {
     id: 'standing',
     title: 'Who is best where',
     caption:
-      'Each cell has the rank of the median on the test set; a stronger colour is a better rank. ' +
-      'The symbols are the verdict: they compare an optimizer with the leader of the problem, which has the best mean rank over the replicates. The leader ranks best if it beats at least one other optimizer and none beats it. ' +
+      'Each cell has the rank of the median on the test set, and the median; a stronger colour is a better rank. The rows have the best optimizer first, as the verdict sees it. ' +
+      "The symbols are the verdict (Wilcoxon's signed-rank test over the replicates, corrected after Holm, at a level of 5 %): they compare an optimizer with the leader of the problem, which has the best mean rank over the replicates. The leader ranks best if it beats at least one other optimizer and none beats it. " +
       'Medians may have another order, but only the tests decide. Optimizers that are not told apart need not be equal. ' +
       (scope.problems.length > kMostNamed ? 'In a narrow window the problems have numbers, in the order of the study. ' : '') +
       describe_size(scope),

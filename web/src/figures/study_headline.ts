@@ -191,6 +191,8 @@ export function make_failures(scope: Scope): string {
   }
   return (
     (failed.length === 0 ? 'No optimizer failed.' : 'Failed by a fault of their own: ' + list_names(failed, kMostNames) + '.') +
-    (empty.length === 0 ? '' : ' Without a value on the test set: ' + list_names(empty, kMostNames) + '.')
+    (empty.length === 0
+      ? ''
+      : ' Without a value on the test set, because a simulation failed or a constraint is violated: ' + list_names(empty, kMostNames) + '.')
   );
 }
