@@ -1,6 +1,6 @@
 // The layout of the pages at the widths of a telephone, a tablet and two screens, in both themes. The
 // page does not scroll sideways, nothing leaves its card, no label is broken within a word, a box that
-// is cut shows that it is, Play is in reach, and the texts of charts are whole and apart.
+// is cut shows that it is, Play is in reach, and the texts of charts are level, whole and apart.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -134,10 +134,15 @@ function find_faults() {
           height,
         };
       });
-    for (const { words, box } of texts) {
+    for (const { words, box, angle } of texts) {
       const over = Math.max(frame.left - box.left, box.right - frame.right, frame.top - box.top, box.bottom - frame.bottom);
       if (over > 2) {
         faults.push(`"${words}" in ${figure} is cut by ${over.toFixed(0)} px`);
+      }
+      // Only the name of an ordinate stands upright.
+      const is_level = Math.abs(angle) < 0.01 || Math.abs(angle + Math.PI / 2) < 0.01;
+      if (!is_level) {
+        faults.push(`"${words}" in ${figure} is tilted`);
       }
       if (/(\.\.\.|…)$/.test(words)) {
         faults.push(`"${words}" in ${figure} is shortened`);

@@ -159,13 +159,14 @@ function make_grid_figure(cells: ComparedCell[]): Figure | null {
     title: 'Where A and B differ',
     caption:
       'The number is A12, the probability that a run of A is better than a run of B: blue where A is better, orange where B is. ' +
-      'A bold number with a bar is decided by the test. The table has the medians.',
+      'A bold number with a bar is decided by the test. The table has the medians.' +
+      (problems.length > 1 ? ' The columns are ' + join_names(shorten_all(problems).map((name, i) => `${i + 1}: ${name}`)) + '.' : ''),
     width: 'full',
-    height: Math.min(900, 150 + 26 * optimizers.length),
+    height: Math.min(900, 80 + 26 * optimizers.length),
     draw: (look) =>
       draw_squares(
         look,
-        shorten_all(problems),
+        problems.length > 1 ? problems.map((_, i) => String(i + 1)) : shorten_all(problems),
         shorten_all(optimizers),
         cells.map((cell) => ({ value: [problems.indexOf(cell.problem), optimizers.indexOf(cell.optimizer)], note: describe(cell) })),
         cells.map((cell) => ({

@@ -75,11 +75,20 @@ function draw_pairs(look: Look, scope: Scope, problem: StudyProblem): EChartsOpt
       marked: pair.significant,
     });
   });
-  return draw_squares(look, names, names, data, squares, ['A12 = 1\nrow better', 'column better\nA12 = 0']);
+  const numbers = names.map((_, i) => String(i + 1));
+  return draw_squares(
+    look,
+    numbers,
+    names.map((name, i) => `${numbers[i]}  ${name}`),
+    data,
+    squares,
+    ['A12 = 1\nrow better', 'column better\nA12 = 0'],
+  );
 }
 
 // Draws one square per item of `data`, whose values are its column and its row, and the key of the
-// colours of A12. `ends` are the words at the ends of the key.
+// colours of A12. Names of columns must be short, because they stand side by side. `ends` are the
+// words at the ends of the key.
 export function draw_squares(
   look: Look,
   columns: string[],
@@ -133,9 +142,8 @@ export function draw_squares(
       return { type: 'group', children };
     },
   };
-  const measure = (names: string[]) =>
-    Math.min(140, Math.max(30, Math.ceil(6 + names.reduce((most, name) => Math.max(most, estimate_width(name, 11)), 0))));
-  const [width, foot] = [measure(rows), Math.min(110, measure(columns))];
+  const widest = rows.reduce((most, name) => Math.max(most, estimate_width(name, 11)), 0);
+  const width = Math.min(150, Math.max(30, Math.ceil(6 + widest)));
   const make_side = (direction: 'x' | 'y'): Part => ({
     ...make_axis(look, direction, '', { categories: direction === 'x' ? columns : rows, inverse: direction === 'y' }),
     name: undefined,
@@ -145,14 +153,13 @@ export function draw_squares(
       color: look.text,
       fontFamily: look.font,
       fontSize: (direction === 'x' ? columns : rows).length > 20 ? 9 : 11,
-      interval: 0,
-      rotate: direction === 'x' ? 60 : 0,
-      width: direction === 'x' ? foot : width,
+      interval: direction === 'x' ? 'auto' : 0,
+      width: direction === 'x' ? 110 : width,
       overflow: 'truncate',
     },
   });
   return make_chart(look, make_side('x'), make_side('y'), [series], {
-    grid: { left: width + 14, right: 92, top: 14, bottom: foot * 0.87 + 18 },
+    grid: { left: width + 14, right: 100, top: 14, bottom: 30 },
     // This is only the key: the squares have their own colours.
     visualMap: {
       type: 'continuous',
@@ -220,10 +227,10 @@ export function make_pairs(all: Scope): Figure | null {
     title: end_title(scope, 'Every two optimizers'),
     caption:
       "Above the diagonal is A12, the probability that a run of the row beats a run of the column (0.5: no difference; 0.56, 0.64, 0.71: a small, medium, large one). Below the diagonal is the p-value of Wilcoxon's signed-rank test over replicates, after Holm's correction for all pairs of the problem. " +
-      'Values that are significant at 0.05 are bold and underlined. Rows and columns are ordered best first. ' +
+      'Values that are significant at 0.05 are bold and underlined. Rows and columns are ordered best first, and a column has the number of its row. ' +
       'A pair that is not told apart need not be equal: more replicates may show a difference. ' +
       describe_size(scope),
-    height: Math.max(380, 140 + 20 * scope.shown.length),
+    height: Math.max(340, 90 + 20 * scope.shown.length),
     width: scope.shown.length > 8 ? 'full' : 'half',
     choices: make_problem_choices(scope),
     draw: (look, picked) => draw_pairs(look, scope, get_problem(scope, picked)),
