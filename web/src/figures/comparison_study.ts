@@ -162,7 +162,7 @@ function make_grid_figure(cells: ComparedCell[]): Figure | null {
       'A bold number with a bar is decided by the test. The table has the medians.' +
       (problems.length > 1 ? ' The columns are ' + join_names(shorten_all(problems).map((name, i) => `${i + 1}: ${name}`)) + '.' : ''),
     width: 'full',
-    height: Math.min(900, 80 + 26 * optimizers.length),
+    height: Math.min(900, Math.max(200, 80 + 26 * optimizers.length)),
     draw: (look) =>
       draw_squares(
         look,
