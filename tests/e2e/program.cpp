@@ -1,6 +1,7 @@
 #include "e2e/program.hpp"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <pty.h>
 #include <signal.h>
 #include <spawn.h>
@@ -19,6 +20,8 @@
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
+
+#include "wait_until.hpp"
 
 namespace armwright {
 namespace {
@@ -168,6 +171,14 @@ Outcome Program::wait() {
   pid_ = -1;
   return {decode(status), read_text(files_ / "out"), read_text(files_ / "err"),
           1024 * static_cast<std::size_t>(usage.ru_maxrss)};
+}
+
+void wait_for_address(const std::filesystem::path& folder) {
+  EXPECT_TRUE(wait_until([&] {
+    return std::ranges::any_of(std::filesystem::directory_iterator(folder), [](const auto& entry) {
+      return read_text(entry.path() / "out").find("http://") != std::string::npos;
+    });
+  }));
 }
 
 Outcome run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,

@@ -50,6 +50,9 @@ class Program {
   int pid_ = -1;
 };
 
+// Waits until an `armwright watch` that runs in the folder has printed the address of its page.
+void wait_for_address(const std::filesystem::path& folder);
+
 Outcome run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
                     const Environment& environment = {});
 

@@ -3,14 +3,12 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
-#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/hash.hpp"
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
-#include "wait_until.hpp"
 
 namespace armwright {
 namespace {
@@ -79,12 +77,7 @@ class CliTrust : public testing::Test {
   void watch(Environment environment = {}) {
     environment.own_group = true;
     Program program(folder_.path(), {"watch", "study"}, environment);
-    EXPECT_TRUE(wait_until([&] {
-      return std::ranges::any_of(
-          std::filesystem::directory_iterator(folder_.path()), [](const auto& entry) {
-            return read_text(entry.path() / "out").find("http://") != std::string::npos;
-          });
-    }));
+    wait_for_address(folder_.path());
     program.send_group(SIGINT);
     EXPECT_EQ(program.wait().exit_code, 0);
   }

@@ -141,12 +141,7 @@ TEST_F(CliWatch, OpensNothingFromAPipe) {
   Environment environment = make_environment({{"DISPLAY", ":7"}, {"BROWSER", "own-browser"}});
   environment.own_group = true;
   Program program(folder_.path(), {"watch", "run"}, environment);
-  EXPECT_TRUE(wait_until([&] {
-    return std::ranges::any_of(
-        std::filesystem::directory_iterator(folder_.path()), [](const auto& entry) {
-          return read_text(entry.path() / "out").find("http://") != std::string::npos;
-        });
-  }));
+  wait_for_address(folder_.path());
   program.send_group(SIGINT);
   EXPECT_EQ(program.wait().exit_code, 0);
   wait_for_children();

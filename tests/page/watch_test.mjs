@@ -67,7 +67,7 @@ test('the page follows the study to its end', async () => {
   const bar = page.getByRole('progressbar', { name: 'Progress' });
   assert.equal(await bar.getAttribute('aria-valuenow'), '47');
   assert.equal(await bar.getAttribute('aria-valuemax'), '48');
-  // Nobody runs the study, so it has no speed.
+  // The study is not running, so it has no speed.
   assert.match(
     await bar.getAttribute('aria-valuetext'),
     /^47 of 48 cells \(97 %\); time left: unknown yet; (simulations per second: unknown yet|no simulation in the last minute); \d+ candidates have failed$/,

@@ -84,7 +84,7 @@ test('the texts of the site can be read in both themes', () => {
         expect_contrast(`${name} in theme ${theme}`, colors[name][theme], colors[ground][theme], 4.5);
       }
     }
-    // What is chosen in the list of pages, and the results of the search.
+    // The chosen page in the list of pages, and the results of the search.
     for (const name of ['text', 'muted', 'accent']) {
       expect_contrast(`${name} in theme ${theme}`, colors[name][theme], colors['accent-soft'][theme], 4.5);
     }

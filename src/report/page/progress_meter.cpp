@@ -156,7 +156,7 @@ json ProgressMeter::observe_study(const StudyPlan& plan, std::span<const CellOut
         const auto cases = static_cast<double>(one.attempt ? one.attempt->cases.value_or(0) : 0);
         simulations += cases;
         work += std::min(cases, budget);
-        // Nothing is left to do in a cell that an error ended.
+        // An error has ended the cell, so it has no work left.
         total -= one.state == CellState::broken ? budget - std::min(cases, budget) : 0;
       }
       continue;

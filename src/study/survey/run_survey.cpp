@@ -320,7 +320,7 @@ class RunSurveyor {
     }
   }
 
-  // Nothing depends on this file, so its damage is only a note.
+  // No result depends on this file, so its damage is only a note.
   void check_times() {
     try {
       load_times(folder_);
