@@ -34,6 +34,8 @@ struct Capabilities {
   bool sampling = false;         // does not learn from evaluations; it need not beat random search
   bool paced =
       false;  // plans with the whole budget: another budget changes the run from its beginning
+  bool integer = false;      // proposes whole numbers for integers
+  bool categorical = false;  // treats categories as words without an order
 };
 
 // The least that a problem must have for an optimizer.

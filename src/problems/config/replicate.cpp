@@ -40,6 +40,10 @@ class StartedElsewhere final : public Problem {
     return problem_->calc_lower_bound(x, outcomes, cases);
   }
   std::vector<double> penalty_objectives() const override { return problem_->penalty_objectives(); }
+  CaseRecord record_case(std::span<const double> x, const CaseBlock& block,
+                         std::uint64_t number) const override {
+    return problem_->record_case(x, block, number);
+  }
   void forget_cases() const override { problem_->forget_cases(); }
 
  private:

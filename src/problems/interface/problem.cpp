@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+
+#include "base/text.hpp"
 
 namespace armwright {
 
@@ -22,6 +25,40 @@ const char* to_string(EvaluationStatus status) {
   }
   assert(false && "an evaluation status without a name");
   return "failed";
+}
+
+const char* to_string(VariableType type) {
+  switch (type) {
+    case VariableType::real:
+      return "real";
+    case VariableType::integer:
+      return "integer";
+    case VariableType::category:
+      return "category";
+  }
+  assert(false && "a type of variables without a name");
+  return "real";
+}
+
+double settle_value(const DecisionVariable& variable, double value) {
+  // Halves are rounded up. Adding 0 makes +0 of -0, so that equal values have equal bits.
+  const double settled =
+      variable.type == VariableType::real ? value : std::floor(value + 0.5) + 0.0;
+  return std::clamp(settled, variable.lower, variable.upper);
+}
+
+std::string format_value(const DecisionVariable& variable, double value) {
+  if (variable.type != VariableType::category) {
+    return format_exact(value);
+  }
+  const auto place = static_cast<std::size_t>(settle_value(variable, value));
+  return variable.choices.at(place);
+}
+
+bool has_discrete(std::span<const DecisionVariable> variables) {
+  return std::ranges::any_of(variables, [](const DecisionVariable& variable) {
+    return variable.type != VariableType::real;
+  });
 }
 
 double calc_scalar(std::span<const double> weights, std::span<const double> objectives) {

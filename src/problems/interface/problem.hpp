@@ -35,6 +35,10 @@ class TrackingProblem;
 // sign and none of them is zero.
 enum class Scale { linear, logarithmic };
 
+// The values that a variable can have: every real number within the bounds, whole numbers, or one
+// of a list of words.
+enum class VariableType : std::uint8_t { real, integer, category };
+
 // One entry of the decision vector.
 struct DecisionVariable {
   std::string name;  // "joint_2.p"
@@ -43,6 +47,10 @@ struct DecisionVariable {
   double upper = 0;
   double start = 0;
   Scale scale = Scale::linear;
+  VariableType type = VariableType::real;  // of others, bounds and start are whole numbers
+  // The words of a category. Its number in a decision vector is the place of the word, from 0, so
+  // its bounds are 0 and choices.size() - 1.
+  std::vector<std::string> choices = {};
 };
 
 // The name and the unit of a number.
@@ -92,6 +100,9 @@ struct ProblemDescription {
   // If calc_scalar() is a logarithm, the difference is one of the number before the logarithm. In
   // the unit of that number; 0 if every difference matters.
   double resolution = 0;
+  // True if the problem has one case only and gives the same answer each time. A run then judges
+  // its candidates by their training evaluations and simulates only what was not evaluated.
+  bool has_single_case = false;
   // The weights of calc_scalar(), one per objective. If empty, calc_scalar() returns the first
   // objective.
   std::vector<double> objective_weights;
@@ -160,6 +171,23 @@ struct CaseOutcome {
   std::vector<double> jacobian;
 };
 
+// What a simulation of one case left beside its numbers. Reports show it for the winner.
+struct CaseRecord {
+  // A recorded signal. `values` has one number per entry of the record's `abscissa`.
+  struct Series {
+    Quantity quantity;
+    std::vector<double> values;
+  };
+  struct File {
+    std::string name;  // a plain file name, "step.png"
+    std::string bytes;
+  };
+  Quantity abscissa;  // of all series: "time" in s
+  std::vector<double> abscissa_values;
+  std::vector<Series> series;
+  std::vector<File> files;
+};
+
 // The result of one decision vector on all cases of a block. If the status is `abandoned`, the
 // objectives and the errors of the abandoned cases are lower bounds, the metrics of these cases
 // cover the simulated part only, and there are no residuals.
@@ -178,6 +206,17 @@ struct Evaluation {
   std::vector<double> jacobian;   // of the residuals, laid out as in CaseOutcome
   int failed_cases = 0;           // the number of cases without an error
 };
+
+// Returns the name of a type: "real", "integer" or "category".
+const char* to_string(VariableType type);
+// Returns the value of the variable's type that is nearest to `value`, within the bounds. Returns a
+// real variable's value as it is, moved into the bounds. `value` is a number.
+double settle_value(const DecisionVariable& variable, double value);
+// Returns the value as a user reads it: the word of a category, or the shortest text of the number
+// that reads back the same.
+std::string format_value(const DecisionVariable& variable, double value);
+// Returns whether a problem has a variable that is not real.
+bool has_discrete(std::span<const DecisionVariable> variables);
 
 // Returns the objectives as one number: the sum of weight times objective. Without weights, returns
 // the first objective.
@@ -226,6 +265,13 @@ class Problem {
   // Returns the objectives that an optimizer gets for an evaluation without objectives: finite, and
   // worse than those of any design that works.
   virtual std::vector<double> penalty_objectives() const = 0;
+
+  // Simulates one case again and returns what it leaves beside its numbers; empty if the problem
+  // records none. Throws Error{bad_data} if the simulation fails.
+  virtual CaseRecord record_case(std::span<const double> /*x*/, const CaseBlock& /*block*/,
+                                 std::uint64_t /*number*/) const {
+    return {};
+  }
 
   // Frees the data that the problem caches per case. Later calls compute the data again; results do
   // not change. Thread-safe.

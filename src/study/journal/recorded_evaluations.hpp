@@ -31,6 +31,8 @@ struct EvaluationRecord {
   std::uint64_t generation = 0;  // 0 for optimizers without generations
   std::vector<double> x;         // as evaluated, inside the bounds
   bool clipped = false;          // the optimizer asked for a point outside the bounds
+  // As the optimizer asked, within the bounds that it was given. Empty if that is x.
+  std::vector<double> proposed = {};
   bool with_jacobian = false;    // the optimizer asked for exact derivatives
   CaseBlock cases;
   Evaluation evaluation;
