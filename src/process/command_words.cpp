@@ -1,5 +1,6 @@
 #include "process/command_words.hpp"
 
+#include <filesystem>
 #include <fmt/format.h>
 
 #include "base/error.hpp"
@@ -45,6 +46,15 @@ std::vector<std::string> split_command(std::string_view command) {
                 "'exec:python3 mine.py'");
   }
   return words;
+}
+
+std::vector<std::string> list_program_files(std::string_view command) {
+  std::vector<std::string> files = split_command(command);
+  std::erase_if(files, [](const std::string& word) {
+    std::error_code ignored;
+    return !std::filesystem::is_regular_file(word, ignored);
+  });
+  return files;
 }
 
 }  // namespace armwright

@@ -11,4 +11,8 @@ namespace armwright {
 // nothing. Throws Error{usage} if a quote is not closed or there is no word.
 std::vector<std::string> split_command(std::string_view command);
 
+// Returns the words of a command that are files, which decide what the program does: the program
+// and its script. Starts nothing. Throws Error{usage} if the command cannot be split.
+std::vector<std::string> list_program_files(std::string_view command);
+
 }  // namespace armwright

@@ -14,10 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-// Writing, comparing and copying JSON recurse once per level. No message of the protocol needs so
-// many levels.
-constexpr int kDeepest = 16;
-
 // Writes the type first, for readers.
 using OrderedJson = nlohmann::ordered_json;
 
@@ -131,38 +127,6 @@ std::string make_tell(std::span<const Score> scores, std::int64_t remaining, boo
   }
   return to_line(
       {{"type", "tell"}, {"scores", list}, {"remaining", remaining}, {"stopped", stopped}});
-}
-
-json read_message(const std::string& line) {
-  const auto refuse_depth = [&](int depth, json::parse_event_t event, const json&) {
-    const bool begins_level =
-        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
-    if (begins_level && depth >= kDeepest) {
-      throw ProtocolError(
-          fmt::format("sent JSON nested more than {} deep: {}", kDeepest, quote(line)));
-    }
-    return true;
-  };
-  json message;
-  try {
-    message = json::parse(line, refuse_depth);
-  } catch (const json::exception&) {
-    const bool has_nan =
-        line.find("NaN") != std::string::npos || line.find("Infinity") != std::string::npos;
-    throw ProtocolError(fmt::format(
-        "sent a line that is not JSON: {}{}", quote(line),
-        has_nan ? " (JSON knows no NaN and no Infinity; points must be finite)"
-                : " (its standard output is for the protocol; notes belong on standard error)"));
-  }
-  if (!message.is_object() || !message.contains("type") || !message["type"].is_string()) {
-    throw ProtocolError(
-        fmt::format("sent JSON that is no object with a \"type\": {}", quote(line)));
-  }
-  return message;
-}
-
-std::string read_type(const json& message) {
-  return message.at("type").get<std::string>();
 }
 
 AskMessage read_ask(const json& message, const ProblemDescription& problem, bool inside) {

@@ -251,15 +251,6 @@ void check_option_names(const OptimizerRow& row) {
 
 }  // namespace
 
-std::vector<std::string> list_program_files(std::string_view command) {
-  std::vector<std::string> files = split_command(command);
-  std::erase_if(files, [](const std::string& word) {
-    std::error_code ignored;
-    return !std::filesystem::is_regular_file(word, ignored);
-  });
-  return files;
-}
-
 OptimizerRow load_process_plugin(std::string_view command, double loading_s) {
   const std::vector<std::string> words = split_command(command);
   OutputLog log;

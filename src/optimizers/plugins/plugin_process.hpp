@@ -20,8 +20,4 @@ inline constexpr int kPluginProtocol = 1;
 // and Error{bad_data} if its description breaks the protocol.
 OptimizerRow load_process_plugin(std::string_view command, double loading_s = 60);
 
-// Returns the words of a command that are files, which decide what the program does: the program
-// and its script. Starts nothing. Throws Error{usage} if the command cannot be split.
-std::vector<std::string> list_program_files(std::string_view command);
-
 }  // namespace armwright

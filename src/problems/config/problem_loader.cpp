@@ -7,6 +7,7 @@
 #include "base/hash.hpp"
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
+#include "base/toml_text.hpp"
 #include "problems/analytic/analytic.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/design_file.hpp"
@@ -21,8 +22,9 @@ const Setting<std::string> kTitle{"title", kNoDefault,
                                   "one line, for lists and reports (default: the name)"};
 const Setting<std::string> kDescription{"description", "", "some lines more"};
 const Setting<std::string> kProblemKind{
-    "kind", one_of({"tracking", "analytic"}), kNoDefault,
-    "tracking: a robot follows a moving target; analytic: a function with a known optimum"};
+    "kind", one_of({"tracking", "analytic", "program"}), kNoDefault,
+    "tracking: a robot follows a moving target; analytic: a function with a known optimum; "
+    "program: a problem of your own that a program computes"};
 const Setting<std::string> kProblemName{
     "name", kNoDefault,
     "name of the problem and of its runs' folders (default: the file's name); {robot} in it stands "
@@ -119,6 +121,7 @@ CaseSets read_sets(const ConfigTable& table, const CaseSets& otherwise) {
   sets.test = read_name(kSetsTest, "test/");
   sets.validation_cases = table.get_or(kSetsValidationCases, otherwise.validation_cases);
   sets.test_cases = table.get_or(kSetsTestCases, otherwise.test_cases);
+  sets.training_cases = otherwise.training_cases;
   return sets;
 }
 
@@ -158,11 +161,13 @@ SweepPlan read_sweep(const ConfigTable& table, const TrackingProblem& problem) {
 
 constexpr std::string_view kRobotInName = "{robot}";
 
-// Returns the problem's name: the file's name, or the name that the file gives. "{robot}" in it
+// Returns the problem's name: that of the program, the file's name, or the name that the file gives. "{robot}" in it
 // stands for the name of the URDF file. A file that extends a file with such a name is named after
 // itself.
-std::string read_name(const ConfigTable& table, const std::filesystem::path& path) {
-  std::string name = table.get_or(kProblemName, path.stem().string());
+std::string read_name(const ConfigTable& table, const std::filesystem::path& path,
+                      const LoadedProblem& loaded) {
+  std::string name = table.get_or(
+      kProblemName, loaded.program.empty() ? path.stem().string() : loaded.name);
   if (const std::size_t at = name.find(kRobotInName); at != std::string::npos) {
     if (table.files().size() > 1) {
       name = path.stem().string();
@@ -199,6 +204,16 @@ void settle_path(const ConfigTable& table, LoadedProblem& loaded) {
   sets.settle(kSetsValidationCases, loaded.sets.validation_cases);
   sets.settle(kSetsTestCases, loaded.sets.test_cases);
   settle_one_case(table.get_table_or_empty(kScheduleSettings), loaded);
+}
+
+// Settles what the program's description says of cases, where the file leaves it open.
+void settle_program(const ConfigTable& table, LoadedProblem& loaded) {
+  const ConfigTable sets = table.get_table_or_empty(kSetsSettings);
+  sets.settle(kSetsValidationCases, loaded.sets.validation_cases);
+  sets.settle(kSetsTestCases, loaded.sets.test_cases);
+  if (loaded.problem->description().has_single_case) {
+    settle_one_case(table.get_table_or_empty(kScheduleSettings), loaded);
+  }
 }
 
 void check_instance(const ConfigTable& function, const AnalyticFunction& row,
@@ -258,7 +273,7 @@ const SettingTable& problem_settings() {
                  &kPathSettings, &kPhysicsSettings, &kTrainingSettings, &kScheduleSettings,
                  &kRacingSettings, &kSetsSettings, &kRunSettings, &kObjectiveSettings,
                  &kVariableSettings, &kMotorSettings, &kRequirementSettings, &kPerturbationSettings,
-                 &kSweepSettings, &kWinnerSettings, &kFunctionSettings}};
+                 &kSweepSettings, &kWinnerSettings, &kFunctionSettings, &kProgramSettings}};
   return settings;
 }
 
@@ -280,24 +295,30 @@ std::filesystem::path resolve_named(const ConfigTable& table, const Setting<std:
 LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path& path,
                            std::span<const EngineRow> engines) {
   LoadedProblem loaded;
-  loaded.name = read_name(table, path);
-  loaded.title = table.get_or(kTitle, loaded.name);
   table.get(kDescription);
-  const bool analytic = table.get(kProblemKind) == "analytic";
-  read_schedule_table(table.get_table_or_empty(kScheduleSettings), loaded);
-  loaded.racing = read_racing_table(table.get_table_or_empty(kRacingSettings));
+  const std::string kind = table.get(kProblemKind);
   CaseSets usual;
-  if (analytic) {  // every case of a function is the same
+  if (kind == "analytic") {  // every case of a function is the same
     usual.validation_cases = 1;
     usual.test_cases = 1;
   }
+  if (kind == "program") {
+    load_program(table, loaded);
+    usual = loaded.sets;
+  }
+  loaded.name = read_name(table, path, loaded);
+  loaded.title = table.get_or(kTitle, loaded.title.empty() ? loaded.name : loaded.title);
+  read_schedule_table(table.get_table_or_empty(kScheduleSettings), loaded);
+  loaded.racing = read_racing_table(table.get_table_or_empty(kRacingSettings));
   loaded.sets = read_sets(table.get_table_or_empty(kSetsSettings), usual);
   const ConfigTable run = table.get_table_or_empty(kRunSettings);
   loaded.optimizer = run.get(kRunOptimizer);
   loaded.budget = run.get(kRunBudget);
   loaded.published = read_published_winner(table.get_table_or_empty(kWinnerSettings));
-  if (analytic) {
+  if (kind == "analytic") {
     load_analytic(table, loaded);
+  } else if (kind == "program") {
+    settle_program(table, loaded);
   } else {
     load_tracking(table, engines, loaded);
     if (table.get_or(kProblemName, "").find(kRobotInName) != std::string::npos) {
@@ -316,6 +337,11 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
 LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides,
                            std::span<const EngineRow> engines) {
   const ReadStep step(fmt::format("the problem '{}'", sanitize(name_or_path)));
+  if (is_program_name(name_or_path)) {
+    const std::string name(name_or_path);
+    const std::string toml = fmt::format("kind = \"program\"\n[program]\ncommand = {}\n", quote_toml(name));
+    return read_problem(ConfigTable::parse(problem_settings(), toml, name, overrides), name, engines);
+  }
   const auto path = resolve_config("problems", name_or_path);
   return read_problem(
       ConfigTable::load(problem_settings(), path, overrides, find_config_folder() / "problems"),

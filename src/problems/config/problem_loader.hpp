@@ -29,6 +29,8 @@ struct CaseSets {
   std::string test = "test/2";
   int validation_cases = 100;
   int test_cases = 500;
+  // How many training cases there are. 0: as many as a schedule asks for.
+  std::int64_t training_cases = 0;
 };
 
 // The result that the source of a problem reports for its winner.
@@ -53,6 +55,8 @@ struct LoadedProblem {
   // Returns the tracking problem; null for an analytic function. Valid as long as `problem`.
   const TrackingProblem* tracking() const { return problem->tracking(); }
   std::optional<FunctionChoice> function;  // of an analytic function
+  // Of a problem that a user has written, the program as the user typed it: "exec:python3 motor.py".
+  std::string program;
   Schedule schedule;
   int fixed_cases = 5;  // K for optimizers without generations, if the schedule needs generations
   Racing racing;

@@ -44,6 +44,16 @@ std::filesystem::path resolve_named(const ConfigTable& table, const Setting<std:
 // Error{bad_data} if it is larger than 8 MiB.
 void add_input(LoadedProblem& loaded, const std::filesystem::path& file);
 
+// program_reader.cpp: [program], a problem that a user has written
+
+extern const SettingTable kProgramSettings;
+// Returns whether a problem's name means a program and not a file: "exec:python3 motor.py".
+bool is_program_name(std::string_view name);
+// Sets the problem, its cases and the hashes of its program's files. Settles the description, so
+// that a recorded problem is read without the program. Throws what the program's kind throws
+// (problems/user).
+void load_program(const ConfigTable& table, LoadedProblem& loaded);
+
 // schedule_reader.cpp: [schedule] and [racing]
 
 extern const SettingTable kScheduleSettings;

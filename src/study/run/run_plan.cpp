@@ -100,6 +100,20 @@ void check_plan(const RunPlan& plan) {
                             plan.schedule.cases, kFewestBredCases));
   }
   const ProblemDescription& problem = plan.problem.problem->description();
+  if (plan.schedule.kind == Schedule::Kind::coevolution && !plan.problem.program.empty()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("schedule coevolution breeds the paths of a robot's tool, and {} has "
+                            "cases of its own; use fixed:K or fresh:K",
+                            plan.problem.name));
+  }
+  const std::int64_t available = plan.problem.sets.training_cases;
+  if (available > 0 && (plan.schedule.cases > available ||
+                        (plan.schedule.kind == Schedule::Kind::fresh && available > 1))) {
+    throw Error(ErrorKind::usage,
+                fmt::format("schedule {} needs more training cases than {} has, which are {}; use "
+                            "fixed:K with K from 1 to {}",
+                            to_text(plan.schedule), plan.problem.name, available, available));
+  }
   if (plan.racing.kind != Racing::Kind::none &&
       (problem.objectives.size() > 1 || !problem.constraints.empty())) {
     throw Error(ErrorKind::usage,

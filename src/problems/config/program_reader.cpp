@@ -1,0 +1,80 @@
+// [program]: a problem that a user has written.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/hash.hpp"
+#include "base/text.hpp"
+#include "problems/config/problem_readers.hpp"
+#include "problems/user/program_server.hpp"
+#include "problems/user/user_problem.hpp"
+#include "process/command_words.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::string_view kExec = "exec:";
+constexpr std::size_t kProgramLimit_bytes = std::size_t{1} << 30;
+
+const Setting<std::string> kProgramCommand{
+    "command", kNoDefault,
+    "for the kind program: what computes it; exec:COMMAND is a program that answers questions in "
+    "JSON lines"};
+const Setting<double> kProgramTimeLimit{
+    "time_limit_s",
+    {.lower = 0, .upper = 1e7, .lower_open = true},
+    ServerLimits{}.time_limit_s,
+    "for the kind program: longest time for one case; a case that takes longer is a failed case, "
+    "and the program is started again"};
+const Setting<double> kProgramMemory{
+    "memory_mib",
+    {.lower = 1, .upper = 1e7},
+    ServerLimits{}.memory_mib,
+    "for the kind program: how much the memory of one of its processes may grow; beyond it the case "
+    "is a failed case"};
+const Setting<std::string> kProgramDescription{
+    "description", "",
+    "for the kind program: its description of itself as JSON, which armwright records; with it, "
+    "the problem is read without starting the program"};
+
+UserProgram make_program(const std::string& command, const ServerLimits& limits,
+                         const std::string& recorded, const ConfigTable& table) {
+  if (command.starts_with(kExec)) {
+    return make_program_problem(std::string_view(command).substr(kExec.size()), limits, recorded);
+  }
+  table.refuse(kProgramCommand, "it must begin with exec:, as in \"exec:python3 motor.py\"");
+}
+
+}  // namespace
+
+const SettingTable kProgramSettings{
+    .key = "program",
+    .settings = {&kProgramCommand, &kProgramTimeLimit, &kProgramMemory, &kProgramDescription}};
+
+bool is_program_name(std::string_view name) {
+  return name.starts_with(kExec);
+}
+
+void load_program(const ConfigTable& table, LoadedProblem& loaded) {
+  const ConfigTable program = table.get_table(kProgramSettings);
+  const std::string command = program.get(kProgramCommand);
+  const ServerLimits limits{.time_limit_s = program.get(kProgramTimeLimit),
+                            .memory_mib = program.get(kProgramMemory)};
+  UserProgram made = make_program(command, limits, program.get(kProgramDescription), program);
+  program.settle(kProgramDescription, to_json(made.description));
+  loaded.program = command;
+  loaded.name = made.description.name;
+  loaded.title = made.description.summary;
+  loaded.sets.training_cases = made.description.training_cases;
+  loaded.sets.validation_cases = static_cast<int>(made.description.validation_cases);
+  loaded.sets.test_cases = static_cast<int>(made.description.test_cases);
+  for (const std::string& file : list_program_files(command.substr(kExec.size()))) {
+    loaded.input_hashes[file] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));
+  }
+  loaded.problem = make_user_problem(std::move(made));
+}
+
+}  // namespace armwright

@@ -1,0 +1,136 @@
+#include "problems/user/program_server.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/json_text.hpp"
+#include "base/text.hpp"
+#include "problems/user/case_messages.hpp"
+#include "process/command_words.hpp"
+#include "process/json_message.hpp"
+#include "process/line_process.hpp"
+#include "process/output_log.hpp"
+
+namespace armwright {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kLoading_s = 60;   // until the description arrives; interpreters load slowly
+constexpr double kProgramEnd_s = 1;  // until a program that was told to quit has ended
+
+std::string make_hello_line() {
+  return fmt::format(R"({{"type":"hello","protocol":{}}})", kProblemProtocol);
+}
+
+// Asks a program that has just started for its description. Throws Error{bad_data} that names it.
+UserDescription ask_description(LineProcess& child, const OutputLog& log, const std::string& name) {
+  std::string fault;
+  try {
+    child.send(make_hello_line(), kLoading_s);
+    const auto line = child.receive(kLoading_s, [] { return false; });
+    return read_user_description(read_message(line.value()));
+  } catch (const ProtocolError& error) {
+    fault = error.what();
+  } catch (const LineProcessFailure& error) {
+    fault = fmt::format("{} before it described itself", error.what());
+  }
+  throw Error(ErrorKind::bad_data, fmt::format("problem '{}': it {}{}", sanitize(name), fault,
+                                               describe_printed(log.last_lines())));
+}
+
+class ProgramServer final : public CaseServer {
+ public:
+  ProgramServer(std::string name, const std::vector<std::string>& words, ServerLimits limits,
+                const UserDescription& recorded)
+      : name_(std::move(name)), limits_(limits), child_(words, log_) {
+    description_ = ask_description(child_, log_, name_);
+    const std::string before = to_json(recorded);
+    const std::string now = to_json(description_);
+    if (before != now) {
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("problem '{}': it describes itself differently from before:\n  {}\n"
+                              "Start a new run or study with the changed problem, or use the "
+                              "problem as it was",
+                              sanitize(name_), join(describe_differences(before, now), "\n  ")));
+    }
+    child_.limit_memory(limits_.memory_mib);
+  }
+
+  std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
+    std::vector<CaseAnswer> answers;
+    ++id_;
+    converse(make_question(description_, "evaluate", id_, jobs),
+             limits_.time_limit_s * static_cast<double>(jobs.size()), [&](const json& message) {
+               read_answers(message, description_, id_, jobs.size() - answers.size(), answers);
+               return answers.size() == jobs.size();
+             });
+    return answers;
+  }
+
+  CaseRecord record(const CaseJob& job) override {
+    CaseRecord record;
+    ++id_;
+    converse(make_question(description_, "record", id_, {&job, 1}), limits_.time_limit_s,
+             [&](const json& message) {
+               record = read_record(message, id_);
+               return true;
+             });
+    return record;
+  }
+
+ private:
+  // Sends a question and hands the messages that follow to `take` until it returns true.
+  void converse(const std::string& question, double limit_s,
+                const std::function<bool(const json&)>& take) {
+    try {
+      child_.send(question, limit_s);
+      while (!take(read_message(child_.receive(limit_s, [] { return false; }).value(), true))) {
+      }
+    } catch (const LineProcessSilence& error) {
+      throw ServerFailure(fmt::format("{} (program.time_limit_s)", error.what()),
+                          EvaluationStatus::timed_out);
+    } catch (const LineProcessFailure& error) {
+      throw ServerFailure(error.what());
+    } catch (const ProtocolError& error) {
+      throw ProtocolError(error.what() + describe_printed(log_.last_lines()));
+    }
+  }
+
+  std::string name_;
+  ServerLimits limits_;
+  UserDescription description_;
+  OutputLog log_;
+  LineProcess child_;
+  std::uint64_t id_ = 0;
+};
+
+}  // namespace
+
+UserProgram make_program_problem(std::string_view command, const ServerLimits& limits,
+                                 const std::string& recorded) {
+  const std::vector<std::string> words = split_command(command);
+  UserProgram program;
+  program.name = fmt::format("exec:{}", command);
+  if (recorded.empty()) {
+    OutputLog log;
+    LineProcess child(words, log);
+    program.description = ask_description(child, log, program.name);
+    child.send(R"({"type":"quit"})", kProgramEnd_s);
+    child.finish(kProgramEnd_s);
+  } else {
+    program.description = read_recorded_description(recorded, program.name);
+  }
+  program.start = [=, name = program.name,
+                   description = program.description]() -> std::unique_ptr<CaseServer> {
+    return std::make_unique<ProgramServer>(name, words, limits, description);
+  };
+  return program;
+}
+
+}  // namespace armwright
