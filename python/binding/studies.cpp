@@ -125,7 +125,7 @@ py::tuple compare(StudyRequest request, const py::list& optimizers, const Place&
   const auto path = place.choose(escape_name(plan.name));
   adopt_recorded(path, plan);
   const StudyFolder folder(path, plan);
-  remember_study(path);
+  remember_study(path, plan.problems);
   for (const std::string& addition : folder.additions()) {
     host.on_message("new in the plan: " + addition);
   }

@@ -179,7 +179,7 @@ int run_compare(const CompareOptions& options, Session& session) {
     return exit_code::kDone;
   }
   const StudyFolder folder(path, plan);
-  remember_study(path);
+  remember_study(path, plan.problems);
   for (const std::string& addition : folder.additions()) {
     write_message("new in the plan: " + addition);
   }

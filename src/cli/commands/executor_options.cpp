@@ -179,7 +179,7 @@ int hand_over_cells(const ExecutorOptions& options, const StudyPlan& plan,
   }
   {
     const StudyFolder folder(path, plan);
-    remember_study(path);
+    remember_study(path, plan.problems);
     for (const std::string& addition : folder.additions()) {
       write_message("new in the plan: " + addition);
     }

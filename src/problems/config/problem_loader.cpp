@@ -293,7 +293,7 @@ std::filesystem::path resolve_named(const ConfigTable& table, const Setting<std:
 }
 
 LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path& path,
-                           std::span<const EngineRow> engines) {
+                           std::span<const EngineRow> engines, const ProgramSource& programs) {
   LoadedProblem loaded;
   table.get(kDescription);
   const std::string kind = table.get(kProblemKind);
@@ -303,7 +303,7 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
     usual.test_cases = 1;
   }
   if (kind == "program") {
-    load_program(table, loaded);
+    load_program(table, programs, loaded);
     usual = loaded.sets;
   }
   loaded.name = read_name(table, path, loaded);
@@ -335,17 +335,18 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
 }
 
 LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides,
-                           std::span<const EngineRow> engines) {
+                           std::span<const EngineRow> engines, const ProgramSource& programs) {
   const ReadStep step(fmt::format("the problem '{}'", sanitize(name_or_path)));
   if (is_program_name(name_or_path)) {
     const std::string name(name_or_path);
     const std::string toml = fmt::format("kind = \"program\"\n[program]\ncommand = {}\n", quote_toml(name));
-    return read_problem(ConfigTable::parse(problem_settings(), toml, name, overrides), name, engines);
+    return read_problem(ConfigTable::parse(problem_settings(), toml, name, overrides), name, engines,
+                        programs);
   }
   const auto path = resolve_config("problems", name_or_path);
   return read_problem(
       ConfigTable::load(problem_settings(), path, overrides, find_config_folder() / "problems"),
-      path, engines);
+      path, engines, programs);
 }
 
 std::vector<ProblemTitle> list_problems() {

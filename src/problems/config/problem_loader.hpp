@@ -18,6 +18,7 @@
 #include "problems/interface/problem.hpp"
 #include "problems/interface/schedule.hpp"
 #include "problems/tracking/tracking_problem.hpp"
+#include "problems/user/case_server.hpp"
 #include "sim/engines/engine_table.hpp"
 
 namespace armwright {
@@ -72,16 +73,26 @@ struct LoadedProblem {
       input_hashes;  // file name -> SHA-256 of every file that the configuration refers to
 };
 
-// Loads a shipped problem by name, or a file. `overrides` are KEY=VALUE texts that replace values
+// Where the programs of users' problems come from.
+struct ProgramSource {
+  bool may_describe = true;  // false: a program needs a recorded description
+  bool may_simulate = true;  // false: no simulation can start a program
+  // Problems that the calling program computes itself, by name: "python:motor".
+  std::vector<UserProgram> hosts = {};
+};
+
+// Loads a shipped problem by name, a file, or a problem that a user has written by its program:
+// "exec:python3 motor.py". `overrides` are KEY=VALUE texts that replace values
 // of the file ("task.speed_m_per_s=2"). `engines` are the engines to choose from. Throws
 // Error{usage} for a wrong setting, Error{bad_data} for a wrong file that a setting names,
 // Error{io} for a file that cannot be read.
 LoadedProblem load_problem(std::string_view name_or_path,
                            std::span<const std::string> overrides = {},
-                           std::span<const EngineRow> engines = engine_table());
+                           std::span<const EngineRow> engines = engine_table(),
+                           const ProgramSource& programs = {});
 
 // Loads the problem that a run recorded as LoadedProblem::resolved_json, also of a replicate
-// (make_replicate). It does not read the problem's file. Files that the configuration names by a
+// (make_replicate). It does not read the problem's file and starts no program. Files that the configuration names by a
 // relative path are looked for in `beside` first; the caller must compare input_hashes to see
 // whether they have changed. Throws Error as load_problem(), and Error{bad_data} for other texts.
 LoadedProblem load_recorded_problem(const std::string& resolved_json, const std::string& name,

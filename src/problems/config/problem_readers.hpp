@@ -33,7 +33,7 @@ namespace armwright {
 // names the problem, and files that the table names are looked for beside it. Throws Error as
 // load_problem() does.
 LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path& path,
-                           std::span<const EngineRow> engines);
+                           std::span<const EngineRow> engines, const ProgramSource& programs);
 
 // Returns the path of the file of `kind` (config_files.hpp) that a setting names. It is looked for
 // beside the configuration first.
@@ -47,12 +47,13 @@ void add_input(LoadedProblem& loaded, const std::filesystem::path& file);
 // program_reader.cpp: [program], a problem that a user has written
 
 extern const SettingTable kProgramSettings;
-// Returns whether a problem's name means a program and not a file: "exec:python3 motor.py".
+// Returns whether a problem's name means a program and not a problem's file:
+// "exec:python3 motor.py", "python:motor".
 bool is_program_name(std::string_view name);
 // Sets the problem, its cases and the hashes of its program's files. Settles the description, so
 // that a recorded problem is read without the program. Throws what the program's kind throws
 // (problems/user).
-void load_program(const ConfigTable& table, LoadedProblem& loaded);
+void load_program(const ConfigTable& table, const ProgramSource& programs, LoadedProblem& loaded);
 
 // schedule_reader.cpp: [schedule] and [racing]
 

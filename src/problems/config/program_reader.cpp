@@ -40,12 +40,50 @@ const Setting<std::string> kProgramDescription{
     "for the kind program: its description of itself as JSON, which armwright records; with it, "
     "the problem is read without starting the program"};
 
+constexpr std::string_view kPython = "python:";
+
+// Describes a problem by its program, or takes the recorded description, and sets how it starts.
 UserProgram make_program(const std::string& command, const ServerLimits& limits,
-                         const std::string& recorded, const ConfigTable& table) {
-  if (command.starts_with(kExec)) {
-    return make_program_problem(std::string_view(command).substr(kExec.size()), limits, recorded);
+                         const std::string& recorded, const ProgramSource& programs,
+                         const ConfigTable& table) {
+  const auto host = std::ranges::find(programs.hosts, command, &UserProgram::name);
+  if (host != programs.hosts.end()) {
+    if (!recorded.empty() && recorded != to_json(host->description)) {
+      refuse_change(command, recorded, host->description);
+    }
+    return *host;
   }
-  table.refuse(kProgramCommand, "it must begin with exec:, as in \"exec:python3 motor.py\"");
+  if (!is_program_name(command)) {
+    table.refuse(kProgramCommand, "it must begin with exec:, as in \"exec:python3 motor.py\"");
+  }
+  const bool is_python = command.starts_with(kPython);
+  UserProgram program{.name = command};
+  program.why_not =
+      "it belongs to a program in Python; run it from there (docs/python.md). show, report and "
+      "export work without it";
+  if (!recorded.empty()) {
+    program.description = read_recorded_description(recorded, command);
+  } else if (is_python) {
+    throw Error(ErrorKind::usage,
+                fmt::format("problem '{}': {}", sanitize(command), program.why_not));
+  } else if (!programs.may_describe) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("problem '{}': its description is not recorded (program.description), "
+                            "and a record starts no program",
+                            sanitize(command)));
+  } else {
+    program = describe_program(std::string_view(command).substr(kExec.size()));
+  }
+  if (is_python) {
+    return program;
+  }
+  if (!programs.may_simulate) {
+    program.why_not = "this command reads what is recorded and starts no program";
+  } else {
+    program.start = make_program_start(std::string_view(command).substr(kExec.size()), limits,
+                                       program.description);
+  }
+  return program;
 }
 
 }  // namespace
@@ -55,15 +93,16 @@ const SettingTable kProgramSettings{
     .settings = {&kProgramCommand, &kProgramTimeLimit, &kProgramMemory, &kProgramDescription}};
 
 bool is_program_name(std::string_view name) {
-  return name.starts_with(kExec);
+  return name.starts_with(kExec) || name.starts_with(kPython);
 }
 
-void load_program(const ConfigTable& table, LoadedProblem& loaded) {
+void load_program(const ConfigTable& table, const ProgramSource& programs, LoadedProblem& loaded) {
   const ConfigTable program = table.get_table(kProgramSettings);
   const std::string command = program.get(kProgramCommand);
   const ServerLimits limits{.time_limit_s = program.get(kProgramTimeLimit),
                             .memory_mib = program.get(kProgramMemory)};
-  UserProgram made = make_program(command, limits, program.get(kProgramDescription), program);
+  UserProgram made =
+      make_program(command, limits, program.get(kProgramDescription), programs, program);
   program.settle(kProgramDescription, to_json(made.description));
   loaded.program = command;
   loaded.name = made.description.name;
@@ -71,8 +110,10 @@ void load_program(const ConfigTable& table, LoadedProblem& loaded) {
   loaded.sets.training_cases = made.description.training_cases;
   loaded.sets.validation_cases = static_cast<int>(made.description.validation_cases);
   loaded.sets.test_cases = static_cast<int>(made.description.test_cases);
-  for (const std::string& file : list_program_files(command.substr(kExec.size()))) {
-    loaded.input_hashes[file] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));
+  if (command.starts_with(kExec)) {
+    for (const std::string& file : list_program_files(command.substr(kExec.size()))) {
+      loaded.input_hashes[file] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));
+    }
   }
   loaded.problem = make_user_problem(std::move(made));
 }

@@ -70,7 +70,7 @@ LoadedProblem load_recorded_problem(const std::string& resolved_json, const std:
   }
   const auto path = beside / (name + ".toml");
   LoadedProblem loaded = read_problem(ConfigTable::parse(problem_settings(), toml, path.string()),
-                                      path, engine_table());
+                                      path, engine_table(), {.may_describe = false, .may_simulate = false});
   if (!start.empty()) {
     if (start.size() != loaded.problem->description().variables.size()) {
       throw Error(ErrorKind::bad_data,

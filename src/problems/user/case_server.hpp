@@ -55,15 +55,16 @@ struct ServerLimits {
   double memory_mib = 4096;  // growth of a process since its start
 };
 
-// What a user's problem is made of. Copies share nothing but what `start` refers to.
+// Starts a server. It may be called from any thread and in forked children. Throws Error if the
+// program cannot be started or does not describe itself as it did.
+using StartServer = std::function<std::unique_ptr<CaseServer>()>;
+
+// What a user's problem is made of.
 struct UserProgram {
   std::string name;  // as the user typed it: "exec:python3 motor.py"
-  UserDescription description;
-  // Starts a server. It may be called from any thread and in forked children. Throws Error if the
-  // program cannot be started or does not describe itself as it did. Null: the problem can be read
-  // and not simulated; `why_not` says what to do.
-  std::function<std::unique_ptr<CaseServer>()> start;
-  std::string why_not;
+  UserDescription description = {};
+  StartServer start = {};    // null: the problem can be read and not simulated
+  std::string why_not = {};  // without `start`: what the user can do
 };
 
 }  // namespace armwright

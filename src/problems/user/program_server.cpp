@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/user/case_messages.hpp"
 #include "process/command_words.hpp"
@@ -50,14 +49,8 @@ class ProgramServer final : public CaseServer {
                 const UserDescription& recorded)
       : name_(std::move(name)), limits_(limits), child_(words, log_) {
     description_ = ask_description(child_, log_, name_);
-    const std::string before = to_json(recorded);
-    const std::string now = to_json(description_);
-    if (before != now) {
-      throw Error(ErrorKind::bad_data,
-                  fmt::format("problem '{}': it describes itself differently from before:\n  {}\n"
-                              "Start a new run or study with the changed problem, or use the "
-                              "problem as it was",
-                              sanitize(name_), join(describe_differences(before, now), "\n  ")));
+    if (to_json(recorded) != to_json(description_)) {
+      refuse_change(name_, to_json(recorded), description_);
     }
     child_.limit_memory(limits_.memory_mib);
   }
@@ -112,25 +105,22 @@ class ProgramServer final : public CaseServer {
 
 }  // namespace
 
-UserProgram make_program_problem(std::string_view command, const ServerLimits& limits,
-                                 const std::string& recorded) {
-  const std::vector<std::string> words = split_command(command);
-  UserProgram program;
-  program.name = fmt::format("exec:{}", command);
-  if (recorded.empty()) {
-    OutputLog log;
-    LineProcess child(words, log);
-    program.description = ask_description(child, log, program.name);
-    child.send(R"({"type":"quit"})", kProgramEnd_s);
-    child.finish(kProgramEnd_s);
-  } else {
-    program.description = read_recorded_description(recorded, program.name);
-  }
-  program.start = [=, name = program.name,
-                   description = program.description]() -> std::unique_ptr<CaseServer> {
+UserProgram describe_program(std::string_view command) {
+  UserProgram program{.name = fmt::format("exec:{}", command)};
+  OutputLog log;
+  LineProcess child(split_command(command), log);
+  program.description = ask_description(child, log, program.name);
+  child.send(R"({"type":"quit"})", kProgramEnd_s);
+  child.finish(kProgramEnd_s);
+  return program;
+}
+
+StartServer make_program_start(std::string_view command, const ServerLimits& limits,
+                               const UserDescription& description) {
+  return [name = fmt::format("exec:{}", command), words = split_command(command), limits,
+          description]() -> std::unique_ptr<CaseServer> {
     return std::make_unique<ProgramServer>(name, words, limits, description);
   };
-  return program;
 }
 
 }  // namespace armwright

@@ -9,11 +9,14 @@
 
 namespace armwright {
 
-// Returns the problem of a program. `command` is the text after "exec:"; it is split into words as
-// by a shell, but no shell runs. Without a recorded description the program is started once to
-// describe itself. Throws Error{usage} if there is no such program, Error{bad_data} if it breaks the
-// protocol or if `recorded` is no description.
-UserProgram make_program_problem(std::string_view command, const ServerLimits& limits,
-                                 const std::string& recorded = "");
+// Returns the problem of a program, which is started once to describe itself. `command` is the text
+// after "exec:"; it is split into words as by a shell, but no shell runs. Throws Error{usage} if
+// there is no such program, Error{bad_data} if it breaks the protocol.
+UserProgram describe_program(std::string_view command);
+
+// Returns a function that starts the program as a server. The function throws Error{bad_data} if
+// the program describes itself in another way than `description`.
+StartServer make_program_start(std::string_view command, const ServerLimits& limits,
+                               const UserDescription& description);
 
 }  // namespace armwright

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "process/json_message.hpp"
 
@@ -386,6 +387,13 @@ UserDescription read_recorded_description(const std::string& recorded, std::stri
                             "wrote: it {}",
                             sanitize(name), error.what()));
   }
+}
+
+void refuse_change(std::string_view name, const std::string& recorded, const UserDescription& now) {
+  throw Error(ErrorKind::bad_data,
+              fmt::format("problem '{}' describes itself differently from what is recorded:\n  {}\n"
+                          "Use the problem as it was, or start a new run or study (--new)",
+                          sanitize(name), join(describe_differences(recorded, to_json(now)), "\n  ")));
 }
 
 double choose_start(const DecisionVariable& variable) {

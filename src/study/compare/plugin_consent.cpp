@@ -17,6 +17,7 @@
 #include "base/file_descriptor.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
+#include "optimizers/plugins/recorded_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 
 namespace armwright {
@@ -54,12 +55,6 @@ std::string calc_plugin_hash(std::span<const NamedOptimizer> optimizers) {
     list.push_back({{"name", optimizer.name}, {"options", optimizer.options}, {"files", files}});
   }
   return calc_sha256_hex(list.dump(-1, ' ', true, json::error_handler_t::replace));
-}
-
-std::vector<NamedOptimizer> select_plugins(std::span<const NamedOptimizer> optimizers) {
-  std::vector<NamedOptimizer> plugins;
-  std::ranges::copy_if(optimizers, std::back_inserter(plugins), needs_consent);
-  return plugins;
 }
 
 // Returns the user's folder for state that outlives a session (XDG Base Directory Specification).
@@ -140,14 +135,29 @@ class StudyMemory {
 }  // namespace
 
 bool needs_consent(const NamedOptimizer& optimizer) {
-  return is_plugin(optimizer.name) ||
+  return is_plugin(optimizer.name) || optimizer.is_problem ||
          std::ranges::any_of(optimizer.options,
                              [](const std::string& option) { return option.starts_with("log="); });
 }
 
+std::vector<NamedOptimizer> list_programs(std::span<const StudyProblem> problems) {
+  std::vector<NamedOptimizer> programs;
+  for (const StudyProblem& problem : problems) {
+    const LoadedProblem& loaded = problem.loaded;
+    if (!loaded.program.empty() && !is_host_name(loaded.program)) {
+      programs.push_back({.name = loaded.program, .is_problem = true});
+      for (const auto& [file, hash] : loaded.input_hashes) {
+        programs.back().options.push_back(fmt::format("{} {}", file, hash));
+      }
+    }
+  }
+  return programs;
+}
+
 void require_consent(const std::filesystem::path& folder,
                      std::span<const NamedOptimizer> optimizers, const AskUser& ask) {
-  const std::vector<NamedOptimizer> plugins = select_plugins(optimizers);
+  std::vector<NamedOptimizer> plugins(optimizers.begin(), optimizers.end());
+  std::erase_if(plugins, [](const NamedOptimizer& one) { return !needs_consent(one); });
   if (plugins.empty()) {
     return;
   }
@@ -172,9 +182,10 @@ void require_consent(const std::filesystem::path& folder,
   memory.write(hash);
 }
 
-void remember_study(const std::filesystem::path& folder) {
-  const std::vector<NamedOptimizer> plugins =
-      select_plugins(read_recorded_optimizers(folder / "study.toml"));
+void remember_study(const std::filesystem::path& folder, std::span<const StudyProblem> problems) {
+  std::vector<NamedOptimizer> plugins = read_recorded_optimizers(folder / "study.toml");
+  std::ranges::move(list_programs(problems), std::back_inserter(plugins));
+  std::erase_if(plugins, [](const NamedOptimizer& one) { return !needs_consent(one); });
   if (!plugins.empty()) {
     StudyMemory(folder).write(calc_plugin_hash(plugins));
   }

@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
+#include "base/toml_text.hpp"
 #include "optimizers/plugins/recorded_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/config_files.hpp"
@@ -58,12 +60,13 @@ std::string make_study_name(const StudyPlan& plan) {
 
 // Sets the schedule that was asked for, else a fixed one: runs are compared in pairs, which need
 // the same training cases for every optimizer. An optimizer without generations cannot have fresh
-// cases. A function has no training cases, so own schedules have no meaning there.
+// cases. A function has no training cases and a program may have a few only, so own schedules have
+// no meaning there.
 void set_schedule(const std::optional<StudySchedule>& asked, StudyProblem& problem) {
   const LoadedProblem& loaded = problem.loaded;
   if (asked && std::holds_alternative<Schedule>(*asked)) {
     problem.schedule = std::get<Schedule>(*asked);
-  } else if (asked && loaded.tracking()) {
+  } else if (asked && !loaded.function && loaded.sets.training_cases == 0) {
     problem.own_schedules = true;
     problem.schedule = kOwnWithoutGenerations;
   } else if (loaded.schedule.changes_cases()) {
@@ -81,9 +84,10 @@ Error add_place(const std::string& place, const Error& error) {
 // Loads a problem of the study. An error names its place. An error of its settings also names the
 // problem, since the study's settings are for all problems.
 LoadedProblem load_named_problem(const NamedProblem& named,
-                                 const std::vector<std::string>& settings) {
+                                 const std::vector<std::string>& settings,
+                                 const ProgramSource& programs) {
   try {
-    return load_problem(named.name, settings);
+    return load_problem(named.name, settings, engine_table(), programs);
   } catch (const Error& error) {
     const std::string& label = named.label.empty() ? named.name : named.label;
     throw add_place(
@@ -125,7 +129,7 @@ bool load_as_recorded(const NamedProblem& named, StudyProblem& problem) {
   std::vector<std::string> variants;
   if (problem.loaded.function) {
     variants = {"function.instance=0"};
-  } else {
+  } else if (problem.loaded.tracking()) {
     for (const std::string& level : supported_simd_names()) {
       variants.push_back("physics.simd=" + level);
     }
@@ -146,6 +150,20 @@ bool load_as_recorded(const NamedProblem& named, StudyProblem& problem) {
   return false;
 }
 
+// Adds the description of a problem's program to the settings, so that the recorded plan can be read
+// without the program.
+void record_description(StudyProblem& problem) {
+  constexpr std::string_view kDescription = "program.description=";
+  const bool is_recorded = std::ranges::any_of(
+      problem.settings, [&](const std::string& text) { return text.starts_with(kDescription); });
+  const auto resolved = nlohmann::json::parse(problem.loaded.resolved_json);
+  if (!is_recorded && resolved.contains("program")) {
+    problem.settings.push_back(
+        std::string(kDescription) +
+        quote_toml(resolved.at("program").at("description").get<std::string>()));
+  }
+}
+
 void load_problems(const RawPlan& raw, StudyPlan& plan) {
   std::vector<std::string> labels;
   for (const NamedProblem& named : raw.problems) {
@@ -154,7 +172,8 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
     for (const auto* settings : {&raw.settings, &named.settings, &raw.last_settings}) {
       problem.settings.insert(problem.settings.end(), settings->begin(), settings->end());
     }
-    problem.loaded = load_named_problem(named, problem.settings);
+    problem.loaded = load_named_problem(named, problem.settings, plan.programs);
+    record_description(problem);
     problem.label = named.label.empty() ? problem.loaded.name : named.label;
     set_schedule(named.schedule ? named.schedule : raw.schedule, problem);
     std::string hash = calc_configuration_hash(problem.loaded);
@@ -385,6 +404,9 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   StudyPlan plan;
   RawPlan raw;
   bool reads_plugins = request.plugins == PluginUse::read;
+  plan.programs.hosts = request.hosts;
+  std::filesystem::path record;          // the folder of the file
+  std::vector<NamedOptimizer> recorded;  // the optimizers that the user did not name
   if (!request.file.empty()) {
     const auto path = resolve_config("studies", request.file);
     raw = read_study_file(path, plan);
@@ -392,13 +414,12 @@ StudyPlan make_study_plan(const StudyRequest& request) {
     // Plugins that the user names in `optimizers` need no consent. A file of the user's own is run
     // as a script is.
     const bool is_of_record = raw.is_recorded || path.filename() == "study.toml";
+    plan.programs.may_describe = !(is_of_record && request.problems.empty());
     if (is_of_record && request.optimizers.empty()) {
       reads_plugins = request.plugins != PluginUse::run;
-      if (request.plugins == PluginUse::run) {
-        require_consent(path.has_parent_path() ? path.parent_path() : ".", raw.optimizers,
-                        request.ask);
-      }
+      recorded = raw.optimizers;
     }
+    record = path.has_parent_path() ? path.parent_path() : ".";
     if (plan.name.empty()) {
       plan.name = path.stem().string();
     }
@@ -426,6 +447,12 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   plan.baselines = plan.baselines && request.baselines;
   check_size(raw, plan);
   load_problems(raw, plan);
+  if (!plan.programs.may_describe) {
+    std::ranges::move(list_programs(plan.problems), std::back_inserter(recorded));
+  }
+  if (request.plugins == PluginUse::run) {
+    require_consent(record, recorded, request.ask);
+  }
   if (plan.budget == 0) {
     throw Error(ErrorKind::usage,
                 "the study names no budget; give --budget CASES or budget = CASES: how many "
@@ -446,7 +473,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
     find_engine(plan.final_engine);
   }
   for (const StudyProblem& problem : plan.problems) {
-    if (plan.start_spread == 0 && !problem.loaded.tracking()) {
+    if (plan.start_spread == 0 && problem.loaded.problem->description().has_single_case) {
       throw Error(ErrorKind::usage,
                   fmt::format("start_spread is 0, and {} has no training cases: the replicates of "
                               "a deterministic optimizer would all be the same run; it must be "

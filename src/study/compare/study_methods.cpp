@@ -59,16 +59,18 @@ json leave_method_out(const LoadedProblem& problem) {
 
 // Loads the problem with the optimizer's settings. An error names both.
 LoadedProblem load_for_method(const StudyProblem& problem, const StudyOptimizer& optimizer,
-                              const std::vector<std::string>& settings) {
+                              const std::vector<std::string>& settings,
+                              const ProgramSource& programs) {
   try {
-    return load_problem(problem.name, settings);
+    return load_problem(problem.name, settings, engine_table(), programs);
   } catch (const Error& error) {
     throw Error(error.kind(), fmt::format("optimizer {} on {}: {}", optimizer.label, problem.label,
                                           error.what()));
   }
 }
 
-LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& optimizer) {
+LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& optimizer,
+                          const ProgramSource& programs) {
   std::vector<std::string> settings = problem.settings;
   settings.insert(settings.end(), optimizer.settings.begin(), optimizer.settings.end());
   // The SIMD level in use for the problem, which may be a recorded one.
@@ -79,7 +81,7 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
   if (problem.loaded.function && problem.loaded.function->instance == 0) {
     settings.push_back("function.instance=0");  // the plan may have been recorded before 2.0
   }
-  LoadedProblem loaded = load_for_method(problem, optimizer, settings);
+  LoadedProblem loaded = load_for_method(problem, optimizer, settings, programs);
   if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {
     throw Error(ErrorKind::usage,
                 fmt::format("optimizer {} on {}: its designs would be judged on other plants than "
@@ -120,7 +122,7 @@ void load_methods(StudyPlan& plan) {
   for (StudyOptimizer& optimizer : plan.optimizers) {
     for (const StudyProblem& problem : plan.problems) {
       if (!optimizer.settings.empty()) {
-        optimizer.loaded.insert_or_assign(problem.label, load_method(problem, optimizer));
+        optimizer.loaded.insert_or_assign(problem.label, load_method(problem, optimizer, plan.programs));
       }
     }
   }

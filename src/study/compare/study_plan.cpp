@@ -37,7 +37,13 @@ std::vector<double> draw_near_start(std::span<const DecisionVariable> variables,
     upper[i] = std::min(upper[i], space.start()[i] + reach);
   }
   RandomStream random(stream);
-  return space.to_point(space.draw_between(lower, upper, random));
+  std::vector<double> start = space.to_point(space.draw_between(lower, upper, random));
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    if (variables[i].type != VariableType::real) {
+      start[i] = settle_value(variables[i], start[i]);
+    }
+  }
+  return start;
 }
 
 // Converts a start of the problem for a method with another controller: the same PID, expressed as

@@ -105,6 +105,7 @@ struct StudyPlan {
   std::string reference;
   std::vector<StudyProblem> problems;
   std::vector<StudyOptimizer> optimizers;
+  ProgramSource programs;  // where the programs of users' problems come from
 };
 
 // The baselines, which are part of every comparison: a useful method must beat both.
@@ -113,8 +114,8 @@ inline constexpr std::string_view kLocalBaseline = "nlopt:neldermead";
 
 // What make_study_plan() does with plugins.
 enum class PluginUse : std::uint8_t {
-  // Starts or opens them, so that the plan can run. Those of a recorded plan need consent
-  // (plugin_consent.hpp).
+  // Starts or opens them, so that the plan can run. Those of a recorded plan need consent, and so do
+  // the programs of its problems (plugin_consent.hpp).
   run,
   // Takes those of a recorded plan from the record. Starts or opens the others.
   preview,
@@ -139,8 +140,9 @@ struct StudyRequest {
   // Optimizers that the calling program implements itself, by name
   // (optimizers/plugins/recorded_optimizer.hpp).
   std::vector<OptimizerRow> rows = {};
+  std::vector<UserProgram> hosts = {};  // problems that it computes itself, likewise
   PluginUse plugins = PluginUse::run;
-  AskUser ask = {};  // whether plugins of a recorded plan may run
+  AskUser ask = {};  // whether plugins and programs of a recorded plan may run
 };
 
 // Reads, completes and checks the whole plan. Throws Error{usage} or Error{bad_data}; Error{usage}

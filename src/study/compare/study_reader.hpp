@@ -28,6 +28,7 @@ struct NamedOptimizer {
   std::optional<Schedule> own_schedule = {};
   std::string stream = {};
   std::string place = {};  // of the name, "FILE:LINE: KEY"; empty if a flag gives it
+  bool is_problem = false;  // the program of a problem (plugin_consent.hpp), no optimizer
 };
 
 struct NamedProblem {

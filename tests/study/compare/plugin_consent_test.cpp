@@ -104,7 +104,7 @@ TEST_F(PluginConsent, ConsentIsRememberedForTheseVeryPlugins) {
   EXPECT_EQ(load(true).size(), 0U);
   replace_in_plan("' first", "' second");
   EXPECT_TRUE(asks());
-  remember_study(study_);
+  remember_study(study_, {});
   EXPECT_EQ(load(true).size(), 0U);
   // Another folder with the same plan is another study.
   std::filesystem::rename(study_, temporary_ / "moved");
