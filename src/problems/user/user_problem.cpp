@@ -185,23 +185,22 @@ class UserProblem final : public Problem {
   // Returns a text that names the first number that is not finite; empty if all are.
   std::string find_not_finite(const CaseAnswer& answer) const {
     const UserDescription& described = program_.description;
-    const auto name = [](const char* kind, const Quantity& quantity, double value) {
-      return fmt::format("its {} '{}' is {}", kind, quantity.name,
-                         std::isnan(value) ? "not a number" : "infinite");
+    const auto name = [](const char* kind, const Quantity& quantity) {
+      return fmt::format("its {} '{}' is not a finite number", kind, quantity.name);
     };
     for (std::size_t i = 0; i < answer.objectives.size(); ++i) {
       if (!std::isfinite(answer.objectives[i])) {
-        return name("objective", described.objectives[i].quantity, answer.objectives[i]);
+        return name("objective", described.objectives[i].quantity);
       }
     }
     for (std::size_t i = 0; i < answer.constraints.size(); ++i) {
       if (!std::isfinite(answer.constraints[i])) {
-        return name("constraint", described.constraints[i].quantity, answer.constraints[i]);
+        return name("constraint", described.constraints[i].quantity);
       }
     }
     for (std::size_t i = 0; i < answer.metrics.size(); ++i) {
       if (!std::isfinite(answer.metrics[i])) {
-        return name("metric", described.metrics[i], answer.metrics[i]);
+        return name("metric", described.metrics[i]);
       }
     }
     return std::ranges::all_of(answer.residuals, [](double r) { return std::isfinite(r); })
