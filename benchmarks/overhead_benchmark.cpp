@@ -2,7 +2,9 @@
 // work without it. The function is the sphere in 20 variables, evaluated as `armwright optimize`
 // does it (run folder, journal, budget, incumbents, progress): in batches of 100, as for a
 // population, and one at a time under NLopt's Nelder-Mead. The requirements are 500 000 evaluations
-// per second in batches and 300 000 one at a time. docs/overhead.md explains the output.
+// per second in batches and 300 000 one at a time. The sphere as a user's problem is measured in
+// batches too: as a program in Python, beside a loop in Python that only exchanges the same messages
+// and may be at most 3 times as fast. docs/overhead.md explains the output.
 #include <benchmark/benchmark.h>
 #ifdef ARMWRIGHT_WITH_NLOPT
 #include <nlopt.h>
@@ -11,6 +13,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <limits>
@@ -59,10 +62,14 @@ class ClockReader : public RunObserver {
   Progress last_;
 };
 
+const std::string kProgram = "python3 " ARMWRIGHT_BENCHMARKS "/sphere_problem.py";
+
 RunPlan make_plan(const std::string& optimizer, const std::vector<std::string>& options,
-                  std::int64_t budget) {
+                  std::int64_t budget, const std::string& problem = "sphere") {
   RunPlan plan;
-  plan.problem = load_problem("sphere", std::vector<std::string>{"function.dimension=20"});
+  plan.problem =
+      load_problem(problem, problem == "sphere" ? std::vector<std::string>{"function.dimension=20"}
+                                                : std::vector<std::string>());
   plan.optimizer = load_optimizer(optimizer);
   plan.options = Options::parse(optimizer, plan.optimizer.options, options);
   plan.budget = budget;
@@ -150,8 +157,8 @@ void bare_loop(benchmark::State& state) {
   watch.report(state, state.iterations() * kBatch);
 }
 
-void batches(benchmark::State& state) {
-  const RunPlan plan = make_plan("random", {}, std::numeric_limits<std::int64_t>::max());
+void measure_batches(benchmark::State& state, const std::string& problem) {
+  const RunPlan plan = make_plan("random", {}, std::numeric_limits<std::int64_t>::max(), problem);
   Run run(plan, static_cast<unsigned>(state.range(0)));
   const auto points = draw_points(run.evaluator.problem(), 100 * kBatch);
   std::size_t next = 0;
@@ -164,6 +171,30 @@ void batches(benchmark::State& state) {
   run.journal.flush();
   watch.stop();
   watch.report(state, run.evaluator.counts().evaluations);
+}
+
+void batches(benchmark::State& state) {
+  measure_batches(state, "sphere");
+}
+
+void batches_of_program(benchmark::State& state) {
+  measure_batches(state, "exec:" + kProgram);
+}
+
+void bare_exchange_in_python(benchmark::State& state) {
+  constexpr int kExchanges = 100;
+  for (auto _ : state) {
+    double seconds = 0;
+    std::FILE* const output =
+        ::popen((kProgram + " bare " + std::to_string(kExchanges)).c_str(), "r");
+    if (output == nullptr || std::fscanf(output, "%lf", &seconds) != 1 || ::pclose(output) != 0) {
+      state.SkipWithError("the loop in Python failed");
+      break;
+    }
+    state.SetIterationTime(seconds);
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * kExchanges *
+                          static_cast<std::int64_t>(kBatch));
 }
 
 #ifdef ARMWRIGHT_WITH_NLOPT
@@ -258,6 +289,11 @@ double calc_min(const std::vector<double>& values) {
 
 ARMWRIGHT_OVERHEAD(bare_loop);
 ARMWRIGHT_OVERHEAD(batches)->ArgName("threads")->Arg(1)->Arg(2);
+ARMWRIGHT_OVERHEAD(batches_of_program)->ArgName("threads")->Arg(1)->Arg(2);
+BENCHMARK(bare_exchange_in_python)
+    ->UseManualTime()
+    ->Unit(benchmark::kMicrosecond)
+    ->ComputeStatistics("min", calc_min);
 #ifdef ARMWRIGHT_WITH_NLOPT
 ARMWRIGHT_OVERHEAD(bare_nelder_mead);
 ARMWRIGHT_OVERHEAD(nelder_mead)->ArgName("threads")->Arg(1)->Arg(2);

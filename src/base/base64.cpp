@@ -35,7 +35,10 @@ std::optional<std::string> from_base64(std::string_view text) {
   bytes.reserve(text.size() / 4 * 3);
   for (std::size_t i = 0; i < text.size(); i += 4) {
     const bool is_last = i + 4 == text.size();
-    const std::size_t padding = !is_last ? 0 : text.ends_with("==") ? 2 : text.ends_with("=") ? 1 : 0;
+    const std::size_t padding = !is_last               ? 0
+                                : text.ends_with("==") ? 2
+                                : text.ends_with("=")  ? 1
+                                                       : 0;
     std::uint32_t triple = 0;
     for (std::size_t k = 0; k < 4; ++k) {
       const std::size_t digit = k < 4 - padding ? kBase64Digits.find(text[i + k]) : 0;

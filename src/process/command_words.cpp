@@ -1,7 +1,8 @@
 #include "process/command_words.hpp"
 
-#include <filesystem>
 #include <fmt/format.h>
+
+#include <filesystem>
 
 #include "base/error.hpp"
 #include "base/text.hpp"

@@ -11,11 +11,11 @@ using Fault = FailingFiles::Fault;
 class KilledProblem : public testing::TestWithParam<const char*> {};
 
 Words make_squares(const std::string& optimizer, const std::string& out, int jobs) {
-  return {"optimize", "exec:python3 " + get_script("problem.py") + " slow-squares",
+  return {"optimize",    "exec:python3 " + get_script("problem.py") + " slow-squares",
           "--optimizer", optimizer,
-          "--budget", "600",
-          "--out", out,
-          "--jobs", std::to_string(jobs),
+          "--budget",    "600",
+          "--out",       out,
+          "--jobs",      std::to_string(jobs),
           "--quiet"};
 }
 
@@ -31,8 +31,8 @@ TEST_P(KilledProblem, EndsWithTheSameBytesAfterTenKills) {
     const auto at = static_cast<std::uint64_t>(random.uniform(2, 9));
     Environment environment = files.make_environment(Fault::kill, at, 0);
     environment.variables.emplace_back("FAULTS_MARK", "problem");
-    const Outcome killed =
-        run_program(folder.path(), make_squares(GetParam(), "runs/killed", 1 + life % 2), environment);
+    const Outcome killed = run_program(
+        folder.path(), make_squares(GetParam(), "runs/killed", 1 + life % 2), environment);
     kills += killed.exit_code == -SIGKILL ? 1 : 0;
     ASSERT_TRUE(wait_until([] { return list_processes("problem").empty(); }))
         << "programs outlive the run";

@@ -166,8 +166,8 @@ constexpr std::string_view kRobotInName = "{robot}";
 // itself.
 std::string read_name(const ConfigTable& table, const std::filesystem::path& path,
                       const LoadedProblem& loaded) {
-  std::string name = table.get_or(
-      kProblemName, loaded.program.empty() ? path.stem().string() : loaded.name);
+  std::string name =
+      table.get_or(kProblemName, loaded.program.empty() ? path.stem().string() : loaded.name);
   if (const std::size_t at = name.find(kRobotInName); at != std::string::npos) {
     if (table.files().size() > 1) {
       name = path.stem().string();
@@ -269,11 +269,12 @@ const SettingTable& problem_settings() {
   static const SettingTable settings{
       .key = "",
       .settings = {&kTitle, &kDescription, &kProblemKind, &kProblemName},
-      .tables = {&kRobotSettings, &kTaskSettings, &kControlSettings, &kWorkspaceSettings,
-                 &kPathSettings, &kPhysicsSettings, &kTrainingSettings, &kScheduleSettings,
-                 &kRacingSettings, &kSetsSettings, &kRunSettings, &kObjectiveSettings,
-                 &kVariableSettings, &kMotorSettings, &kRequirementSettings, &kPerturbationSettings,
-                 &kSweepSettings, &kWinnerSettings, &kFunctionSettings, &kProgramSettings}};
+      .tables = {
+          &kRobotSettings,    &kTaskSettings,    &kControlSettings,     &kWorkspaceSettings,
+          &kPathSettings,     &kPhysicsSettings, &kTrainingSettings,    &kScheduleSettings,
+          &kRacingSettings,   &kSetsSettings,    &kRunSettings,         &kObjectiveSettings,
+          &kVariableSettings, &kMotorSettings,   &kRequirementSettings, &kPerturbationSettings,
+          &kSweepSettings,    &kWinnerSettings,  &kFunctionSettings,    &kProgramSettings}};
   return settings;
 }
 
@@ -339,9 +340,10 @@ LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::s
   const ReadStep step(fmt::format("the problem '{}'", sanitize(name_or_path)));
   if (is_program_name(name_or_path)) {
     const std::string name(name_or_path);
-    const std::string toml = fmt::format("kind = \"program\"\n[program]\ncommand = {}\n", quote_toml(name));
-    return read_problem(ConfigTable::parse(problem_settings(), toml, name, overrides), name, engines,
-                        programs);
+    const std::string toml =
+        fmt::format("kind = \"program\"\n[program]\ncommand = {}\n", quote_toml(name));
+    return read_problem(ConfigTable::parse(problem_settings(), toml, name, overrides), name,
+                        engines, programs);
   }
   const auto path = resolve_config("problems", name_or_path);
   return read_problem(

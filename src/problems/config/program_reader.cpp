@@ -29,12 +29,12 @@ const Setting<double> kProgramTimeLimit{
     ServerLimits{}.time_limit_s,
     "for the kind program: longest time for one case; a case that takes longer is a failed case, "
     "and the program is started again"};
-const Setting<double> kProgramMemory{
-    "memory_mib",
-    {.lower = 1, .upper = 1e7},
-    ServerLimits{}.memory_mib,
-    "for the kind program: how much the memory of one of its processes may grow; beyond it the case "
-    "is a failed case"};
+const Setting<double> kProgramMemory{"memory_mib",
+                                     {.lower = 1, .upper = 1e7},
+                                     ServerLimits{}.memory_mib,
+                                     "for the kind program: how much the memory of one of its "
+                                     "processes may grow; beyond it the case "
+                                     "is a failed case"};
 const Setting<std::string> kProgramDescription{
     "description", "",
     "for the kind program: its description of itself as JSON, which armwright records; with it, "

@@ -69,8 +69,9 @@ LoadedProblem load_recorded_problem(const std::string& resolved_json, const std:
                             sanitize(name), describe_json_error(error.what())));
   }
   const auto path = beside / (name + ".toml");
-  LoadedProblem loaded = read_problem(ConfigTable::parse(problem_settings(), toml, path.string()),
-                                      path, engine_table(), {.may_describe = false, .may_simulate = false});
+  LoadedProblem loaded =
+      read_problem(ConfigTable::parse(problem_settings(), toml, path.string()), path,
+                   engine_table(), {.may_describe = false, .may_simulate = false});
   if (!start.empty()) {
     if (start.size() != loaded.problem->description().variables.size()) {
       throw Error(ErrorKind::bad_data,

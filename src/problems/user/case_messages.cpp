@@ -56,9 +56,9 @@ std::vector<double> read_values(const json& answer, const char* key, std::span<c
     return values;
   }
   if (list == answer.end() || !list->is_array() || list->size() != named.size()) {
-    throw ProtocolError(fmt::format(
-        "sent {} whose \"{}\" are {}; the description has {} of them", where, key,
-        list == answer.end() ? "missing" : quote(*list), named.size()));
+    throw ProtocolError(fmt::format("sent {} whose \"{}\" are {}; the description has {} of them",
+                                    where, key, list == answer.end() ? "missing" : quote(*list),
+                                    named.size()));
   }
   for (std::size_t i = 0; i < named.size(); ++i) {
     values.push_back(read_value((*list)[i], where, get_name(named[i])));
@@ -102,10 +102,10 @@ CaseAnswer read_answer(const json& answer, const UserDescription& description,
     return read;
   }
   const auto name_of = [](const auto& one) -> const std::string& { return one.quantity.name; };
-  read.objectives = read_values(answer, "objectives", std::span(description.objectives), name_of,
-                                where);
-  read.constraints = read_values(answer, "constraints", std::span(description.constraints),
-                                 name_of, where);
+  read.objectives =
+      read_values(answer, "objectives", std::span(description.objectives), name_of, where);
+  read.constraints =
+      read_values(answer, "constraints", std::span(description.constraints), name_of, where);
   read.metrics = read_values(
       answer, "metrics", std::span(description.metrics),
       [](const Quantity& metric) -> const std::string& { return metric.name; }, where);
@@ -124,8 +124,8 @@ CaseAnswer read_answer(const json& answer, const UserDescription& description,
 void check_id(const json& message, std::uint64_t id) {
   const json& sent = require(message, "id", "an answer");
   if (!sent.is_number_integer() || sent != id) {
-    throw ProtocolError(fmt::format("answered the question {}; it was asked question {}",
-                                    quote(sent), id));
+    throw ProtocolError(
+        fmt::format("answered the question {}; it was asked question {}", quote(sent), id));
   }
 }
 
@@ -139,8 +139,8 @@ std::vector<double> read_points(const json& object, const std::string& where) {
   std::vector<double> values;
   for (const json& value : list) {
     if (!value.is_number() || !std::isfinite(value.get<double>())) {
-      throw ProtocolError(fmt::format("sent {} with the value {}, not a finite number", where,
-                                      quote(value)));
+      throw ProtocolError(
+          fmt::format("sent {} with the value {}, not a finite number", where, quote(value)));
     }
     values.push_back(value.get<double>());
   }
@@ -148,7 +148,8 @@ std::vector<double> read_points(const json& object, const std::string& where) {
 }
 
 Quantity read_quantity_of(const json& object, const std::string& where) {
-  return {read_name(object, where), object.contains("unit") ? read_text(object, "unit", where) : ""};
+  return {read_name(object, where),
+          object.contains("unit") ? read_text(object, "unit", where) : ""};
 }
 
 // Returns the content of a file, which the message has as text or as base64.
@@ -212,16 +213,16 @@ std::string make_question(const UserDescription& description, const char* type, 
                      calc_case_seed(block, job.number));
     }
   }
-  return text + (jobs.front().residuals && description.has_residuals ? "],\"residuals\":true}"
-                                                                      : "]}");
+  return text +
+         (jobs.front().residuals && description.has_residuals ? "],\"residuals\":true}" : "]}");
 }
 
 void check_answer(const CaseAnswer& answer, const UserDescription& description,
                   const std::string& where) {
   const auto check = [&](std::size_t count, std::size_t expected, const char* what) {
     if (count != expected) {
-      throw ProtocolError(fmt::format("sent {} with {} {}; the description has {}", where, count,
-                                      what, expected));
+      throw ProtocolError(
+          fmt::format("sent {} with {} {}; the description has {}", where, count, what, expected));
     }
   };
   check(answer.objectives.size(), description.objectives.size(), "objectives");
@@ -232,9 +233,10 @@ void check_answer(const CaseAnswer& answer, const UserDescription& description,
 void read_answers(const json& message, const UserDescription& description, std::uint64_t id,
                   std::size_t most, std::vector<CaseAnswer>& answers) {
   if (read_type(message) != "answers") {
-    throw ProtocolError(fmt::format("answered \"evaluate\" with a message of the type {}; it must "
-                                    "be \"answers\"",
-                                    quote(read_type(message))));
+    throw ProtocolError(
+        fmt::format("answered \"evaluate\" with a message of the type {}; it must "
+                    "be \"answers\"",
+                    quote(read_type(message))));
   }
   check_id(message, id);
   const json& list = require(message, "answers", "an answer");

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kLoading_s = 60;   // until the description arrives; interpreters load slowly
+constexpr double kLoading_s = 60;    // until the description arrives; interpreters load slowly
 constexpr double kProgramEnd_s = 1;  // until a program that was told to quit has ended
 
 std::string make_hello_line() {

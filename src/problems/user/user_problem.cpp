@@ -24,9 +24,11 @@ namespace {
 // functions, a model that is fitted through it keeps its digits.
 constexpr double kUserPenalty = 1e12;
 
-// A question has as many jobs as are answered in about this time, so that all threads end together.
-constexpr double kQuestion_s = 0.1;
-constexpr std::size_t kMostJobs = 1000;  // of a question
+// A question has at least as many jobs as are answered in the first time, because a message takes
+// time too, and at most as many as are answered in the second one, so that all threads end together.
+constexpr double kShortQuestion_s = 0.002;
+constexpr double kLongQuestion_s = 0.1;
+constexpr double kMostJobs = 1000;  // of a question
 
 // The squared residuals add up to the objective except for rounding.
 constexpr double kResidualTolerance = 1e-6;
@@ -47,7 +49,12 @@ class UserProblem final : public Problem {
   const ProblemDescription& description() const override { return description_; }
 
   BatchSize batch_size(CaseRole /*role*/) const override {
-    return {.granularity = 1, .largest = jobs_per_question_};
+    const auto count = [cost_s = case_s_.load()](double question_s) {
+      return static_cast<std::size_t>(std::clamp(question_s / cost_s, 1.0, kMostJobs));
+    };
+    const std::size_t granularity = count(kShortQuestion_s);
+    return {.granularity = granularity,
+            .largest = count(kLongQuestion_s) / granularity * granularity};
   }
 
   std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override {
@@ -55,8 +62,7 @@ class UserProblem final : public Problem {
     while (!jobs.empty()) {
       const auto is_other = [&](const CaseJob& job) { return job.block != jobs.front().block; };
       const auto count =
-          std::min<std::size_t>(kMostJobs, static_cast<std::size_t>(
-                                               std::ranges::find_if(jobs, is_other) - jobs.begin()));
+          static_cast<std::size_t>(std::ranges::find_if(jobs, is_other) - jobs.begin());
       ask(jobs.first(count), outcomes);
       jobs = jobs.subspan(count);
     }
@@ -103,8 +109,8 @@ class UserProblem final : public Problem {
 
   std::unique_ptr<CaseServer> take_server() const {
     if (!program_.start) {
-      throw Error(ErrorKind::usage, fmt::format("problem '{}': {}", sanitize(program_.name),
-                                                program_.why_not));
+      throw Error(ErrorKind::usage,
+                  fmt::format("problem '{}': {}", sanitize(program_.name), program_.why_not));
     }
     return pool_.take();
   }
@@ -145,10 +151,8 @@ class UserProblem final : public Problem {
 
   // Results do not depend on the number of jobs per question, so a measured time may choose it.
   void learn_time(std::chrono::steady_clock::duration passed, std::size_t jobs) const {
-    const double per_job_s =
-        std::chrono::duration<double>(passed).count() / static_cast<double>(jobs);
-    jobs_per_question_ = static_cast<std::size_t>(
-        std::clamp(kQuestion_s / std::max(per_job_s, 1e-9), 1.0, static_cast<double>(kMostJobs)));
+    case_s_ =
+        std::max(1e-9, std::chrono::duration<double>(passed).count() / static_cast<double>(jobs));
   }
 
   CaseOutcome make_outcome(const CaseJob& job, CaseAnswer answer) const {
@@ -215,9 +219,10 @@ class UserProblem final : public Problem {
     }
     const double objective = answer.objectives.front();
     if (std::abs(sum - objective) > kResidualTolerance * std::max(std::abs(objective), sum)) {
-      fail(fmt::format("it answered with the objective {} and with residuals whose squares add up "
-                       "to {}; both must be the same",
-                       format_exact(objective), format_exact(sum)));
+      fail(
+          fmt::format("it answered with the objective {} and with residuals whose squares add up "
+                      "to {}; both must be the same",
+                      format_exact(objective), format_exact(sum)));
     }
   }
 
@@ -237,14 +242,12 @@ class UserProblem final : public Problem {
     return outcome;
   }
 
-  bool has_penalty() const {
-    return program_.description.objectives.front().penalty.has_value();
-  }
+  bool has_penalty() const { return program_.description.objectives.front().penalty.has_value(); }
 
   UserProgram program_;
   ProblemDescription description_;
   mutable ServerPool pool_;
-  mutable std::atomic<std::size_t> jobs_per_question_ = 1;
+  mutable std::atomic<double> case_s_ = kLongQuestion_s;  // of the last question
 };
 
 Evaluation UserProblem::aggregate(std::span<const double> /*x*/,

@@ -122,7 +122,8 @@ void load_methods(StudyPlan& plan) {
   for (StudyOptimizer& optimizer : plan.optimizers) {
     for (const StudyProblem& problem : plan.problems) {
       if (!optimizer.settings.empty()) {
-        optimizer.loaded.insert_or_assign(problem.label, load_method(problem, optimizer, plan.programs));
+        optimizer.loaded.insert_or_assign(problem.label,
+                                          load_method(problem, optimizer, plan.programs));
       }
     }
   }

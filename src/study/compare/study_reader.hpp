@@ -27,7 +27,7 @@ struct NamedOptimizer {
   // A resolved plan has these two; plans of version 1.0 do not.
   std::optional<Schedule> own_schedule = {};
   std::string stream = {};
-  std::string place = {};  // of the name, "FILE:LINE: KEY"; empty if a flag gives it
+  std::string place = {};   // of the name, "FILE:LINE: KEY"; empty if a flag gives it
   bool is_problem = false;  // the program of a problem (plugin_consent.hpp), no optimizer
 };
 

@@ -108,10 +108,10 @@ std::string make_cell_script(const StudyPlan& plan, std::span<const Chunk> chunk
       request.configs ? fmt::format("export ARMWRIGHT_CONFIGS={}\n", quote_word(*request.configs))
                       : "";
   // The jobs inherit the consent to run plugins.
-  const bool has_plugins =
-      !list_programs(plan.problems).empty() ||
-      std::ranges::any_of(plan.optimizers,
-                          [](const StudyOptimizer& one) { return is_plugin(one.name); });
+  const bool has_plugins = !list_programs(plan.problems).empty() ||
+                           std::ranges::any_of(plan.optimizers, [](const StudyOptimizer& one) {
+                             return is_plugin(one.name);
+                           });
   const std::string trust = has_plugins ? " --trust" : "";
   // Texts in comments and messages must not end them.
   std::string text = fmt::format(

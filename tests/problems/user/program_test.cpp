@@ -229,12 +229,14 @@ TEST(ProgramProblem, ABadDescriptionIsRefusedWithTheFieldAndTheValue) {
               HasSubstr("variables[1].start is 2.5; an integer's start must be a whole number"));
   EXPECT_THAT(refusal_of("zero-logarithmic"),
               HasSubstr("variables[0].scale is \"logarithmic\", and the bounds -5 and 5"));
-  EXPECT_THAT(refusal_of("duplicate"), HasSubstr("variables[1].name is 'x', which another one has"));
+  EXPECT_THAT(refusal_of("duplicate"),
+              HasSubstr("variables[1].name is 'x', which another one has"));
   EXPECT_THAT(refusal_of("one-word"), HasSubstr("variables[2].choices has one word"));
   EXPECT_THAT(refusal_of("unnamed"), HasSubstr("sent objectives[0] without \"name\""));
   EXPECT_THAT(refusal_of("no-objectives"), HasSubstr("objectives is empty"));
   EXPECT_THAT(refusal_of("no-variables"), HasSubstr("variables is empty"));
-  EXPECT_THAT(refusal_of("no-list"), HasSubstr("whose \"variables\" is '{\"x\":1}'; it must be a list"));
+  EXPECT_THAT(refusal_of("no-list"),
+              HasSubstr("whose \"variables\" is '{\"x\":1}'; it must be a list"));
   EXPECT_THAT(refusal_of("huge-count"), HasSubstr("a whole number from 0 to 1000000"));
   EXPECT_THAT(refusal_of("greeting"), HasSubstr("not JSON: 'Loading the model...'"));
   EXPECT_THAT(refusal_of("other-message"), HasSubstr("not with a message of the type \"problem\""));
