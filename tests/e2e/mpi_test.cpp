@@ -132,6 +132,32 @@ TEST_P(MpiRuns, WriteTheSameOnAnyNumberOfRanksAndThreads) {
   }
 }
 
+// Every rank starts the program of the problem for itself.
+TEST_F(Mpi, AComparisonOnAUsersProblemHasTheSameBytesForAnyThreadsAndRanks) {
+  const std::string problem =
+      "exec:python3 " ARMWRIGHT_TEST_PLUGINS_SOURCE "/problem.py slow-squares";
+  const auto make_command = [&](const std::string& out, const char* jobs) {
+    return std::vector<std::string>{
+        "compare",      "--problems",
+        problem,        "--optimizers",
+        "ga,cmaes,lhs,nlopt:cobyla,nlopt:bobyqa,pagmo:de,pagmo:pso,ceres:lm",
+        "--replicates", "2",
+        "--budget",     "60",
+        "--jobs",       jobs,
+        "--out",        out,
+        "--quiet"};
+  };
+  const Outcome one = run_program(folder_.path(), make_command("one", "1"));
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_THAT(one.out, HasSubstr("Verdict"));
+  const auto expected = read_study(folder_ / "one");
+  ASSERT_EQ(run_program(folder_.path(), make_command("two", "2")).exit_code, 0);
+  EXPECT_EQ(read_study(folder_ / "two"), expected);
+  const Outcome ranks = run_program(folder_.path(), make_command("three", "1"), make_ranks(3));
+  EXPECT_EQ(ranks.exit_code, 0) << ranks.err;
+  EXPECT_EQ(read_study(folder_ / "three"), expected);
+}
+
 // Evaluations of several milliseconds each.
 std::vector<std::string> make_long_command(const std::string& out) {
   return {"optimize", "q1-complex",

@@ -154,6 +154,42 @@ TEST_F(CliTrust, WhoStartedAStudyIsNotAsked) {
   EXPECT_EQ(run(rerun).exit_code, 0);
 }
 
+// The program of a problem is a plugin, too: its description is recorded.
+TEST_F(CliTrust, AProblemIsReadWithoutItsProgramAndRunsWithConsentOnly) {
+  std::filesystem::copy_file(std::string(ARMWRIGHT_TEST_PLUGINS_SOURCE) + "/problem.py",
+                             folder_ / "mine.py");
+  const Outcome made =
+      run({"compare", "--problems", "exec:python3 mine.py", "--optimizers", "random",
+           "--no-baselines", "--replicates", "2", "--budget", "20", "--out", "study", "--quiet"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  std::filesystem::remove(folder_ / "mine.py");
+  for (const Words& words : list_readers()) {
+    if (words[1].find("cells") == std::string::npos) {
+      const Outcome outcome = run(words);
+      EXPECT_EQ(outcome.exit_code, 0) << words[0] << outcome.err;
+      std::filesystem::remove_all(folder_ / "figures");
+      std::filesystem::remove_all(folder_ / "export");
+    }
+  }
+  const std::string plan = read_text(folder_ / "study/study.toml");
+  const std::size_t hash = plan.find("configuration_sha256");
+  edit_plan(plan.substr(hash, plan.find('\n', hash) - hash), "");
+  edit_plan("exec:python3 mine.py", R"(exec:sh -c \"id > PWNED\")");
+  for (const Words& words : list_readers()) {
+    if (words[1].find("cells") == std::string::npos) {
+      run(words);
+      EXPECT_FALSE(std::filesystem::exists(folder_ / "PWNED")) << words[0];
+    }
+  }
+  const Words rerun = {"rerun", "study", "faulty/random/r01", "--out", "anew"};
+  EXPECT_THAT(run(rerun).err, AllOf(HasSubstr(kProgram), HasSubstr("--trust")));
+  edit_plan("program.description=", R"(program.time_limit_s=5", "title=)");
+  const Outcome refused = run({"show", "study"});
+  EXPECT_EQ(refused.exit_code, 4);
+  EXPECT_THAT(refused.err, HasSubstr("its description is not recorded"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "PWNED"));
+}
+
 TEST_F(CliTrust, JobsInheritTheConsent) {
   const std::string library = std::string(ARMWRIGHT_TEST_PLUGINS) + "/libgood.so";
   const Outcome script =

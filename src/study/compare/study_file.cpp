@@ -164,7 +164,18 @@ void record_description(StudyProblem& problem) {
   }
 }
 
-void load_problems(const RawPlan& raw, StudyPlan& plan) {
+// Reads the hashes of files as a plan records them.
+std::map<std::string, std::string> read_inputs(std::span<const std::string> inputs) {
+  std::map<std::string, std::string> hashes;
+  for (const std::string& input : inputs) {
+    const std::size_t blank = std::min(input.rfind(' '), input.size());
+    hashes[input.substr(0, blank)] = input.substr(std::min(blank + 1, input.size()));
+  }
+  return hashes;
+}
+
+// With `reads_programs`, takes the files of programs as they are recorded, because they may be gone.
+void load_problems(const RawPlan& raw, bool reads_programs, StudyPlan& plan) {
   std::vector<std::string> labels;
   for (const NamedProblem& named : raw.problems) {
     StudyProblem problem;
@@ -174,6 +185,9 @@ void load_problems(const RawPlan& raw, StudyPlan& plan) {
     }
     problem.loaded = load_named_problem(named, problem.settings, plan.programs);
     record_description(problem);
+    if (reads_programs && !problem.loaded.program.empty()) {
+      problem.loaded.input_hashes = read_inputs(named.inputs);
+    }
     problem.label = named.label.empty() ? problem.loaded.name : named.label;
     set_schedule(named.schedule ? named.schedule : raw.schedule, problem);
     std::string hash = calc_configuration_hash(problem.loaded);
@@ -217,10 +231,7 @@ OptimizerRow read_row(const NamedOptimizer& named) {
   if (named.description.empty() && !named.label.empty()) {
     row.name = named.label;  // a program's own name is not recorded, but it is the label
   }
-  for (const std::string& input : named.inputs) {
-    const std::size_t blank = std::min(input.rfind(' '), input.size());
-    row.input_hashes[input.substr(0, blank)] = input.substr(std::min(blank + 1, input.size()));
-  }
+  row.input_hashes = read_inputs(named.inputs);
   return row;
 }
 
@@ -415,6 +426,8 @@ StudyPlan make_study_plan(const StudyRequest& request) {
     // as a script is.
     const bool is_of_record = raw.is_recorded || path.filename() == "study.toml";
     plan.programs.may_describe = !(is_of_record && request.problems.empty());
+    plan.programs.may_simulate =
+        plan.programs.may_describe || request.plugins != PluginUse::preview;
     if (is_of_record && request.optimizers.empty()) {
       reads_plugins = request.plugins != PluginUse::run;
       recorded = raw.optimizers;
@@ -446,7 +459,9 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   plan.budget = request.budget.value_or(plan.budget);
   plan.baselines = plan.baselines && request.baselines;
   check_size(raw, plan);
-  load_problems(raw, plan);
+  const bool reads_programs =
+      !plan.programs.may_describe && request.plugins != PluginUse::run;
+  load_problems(raw, reads_programs, plan);
   if (!plan.programs.may_describe) {
     std::ranges::move(list_programs(plan.problems), std::back_inserter(recorded));
   }

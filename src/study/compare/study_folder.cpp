@@ -107,6 +107,14 @@ std::string make_method(const StudyPlan& plan, const StudyOptimizer& optimizer) 
   return text;
 }
 
+std::vector<std::string> list_inputs(const std::map<std::string, std::string>& hashes) {
+  std::vector<std::string> inputs;
+  for (const auto& [file, hash] : hashes) {
+    inputs.push_back(file + " " + hash);
+  }
+  return inputs;
+}
+
 std::string make_body(const StudyPlan& plan) {
   std::string text = fmt::format(
       "name = {}\ntitle = {}\nseed = {}\nreplicates = {}\nbudget = {}\nstart_spread = {}\n"
@@ -123,22 +131,23 @@ std::string make_body(const StudyPlan& plan) {
       plan.judge_along ? "along = true\n" : "");
   for (const StudyProblem& problem : plan.problems) {
     const CaseSets& sets = problem.loaded.sets;
+    const std::string inputs =
+        problem.loaded.program.empty()
+            ? ""
+            : fmt::format("inputs = {}\n", quote_list(list_inputs(problem.loaded.input_hashes)));
     text += fmt::format(
         "\n[[problem]]\nname = {}\nlabel = {}\nset = {}\nschedule = {}\nvalidation_set = {}\n"
-        "test_set = {}\nconfiguration_sha256 = {}\n",
+        "test_set = {}\nconfiguration_sha256 = {}\n{}",
         quote(problem.name), quote(problem.label), quote_list(problem.settings),
         quote(describe_schedule(problem)), quote(sets.validation), quote(sets.test),
-        quote(calc_configuration_hash(problem.loaded)));
+        quote(calc_configuration_hash(problem.loaded)), inputs);
   }
   for (const StudyOptimizer& optimizer : plan.optimizers) {
-    std::vector<std::string> inputs;
-    for (const auto& [file, hash] : optimizer.row.input_hashes) {
-      inputs.push_back(file + " " + hash);
-    }
     text += fmt::format(
         "\n[[optimizer]]\nname = {}\nlabel = {}\nbaseline = {}\noptions = {}\ninputs = {}\n{}",
         quote(optimizer.name), quote(optimizer.label), optimizer.baseline ? "true" : "false",
-        quote_list(list_options(optimizer)), quote_list(inputs), make_method(plan, optimizer));
+        quote_list(list_options(optimizer)), quote_list(list_inputs(optimizer.row.input_hashes)),
+        make_method(plan, optimizer));
   }
   return text + make_targets(plan);
 }

@@ -112,12 +112,14 @@ const Setting<std::string> kProblemEntryValidation{
     "validation_set", "", "in a resolved plan: the validation set, for the reader"};
 const Setting<std::string> kProblemEntryTest{"test_set", "",
                                              "in a resolved plan: the test set, for the reader"};
+const Setting<std::vector<std::string>> kProblemEntryInputs{
+    "inputs", kNoDefault, "in a resolved plan: hashes of the files of a problem's program"};
 const SettingTable kProblemEntrySettings{
     .key = "problem",
     .is_array = true,
     .settings = {&kProblemEntryName, &kProblemEntryLabel, &kProblemEntrySet, &kProblemEntrySchedule,
                  &kProblemEntryHash, &kProblemEntryTraining, &kProblemEntryValidation,
-                 &kProblemEntryTest}};
+                 &kProblemEntryTest, &kProblemEntryInputs}};
 
 const Setting<std::string> kOptimizerEntryName{"name", kNoDefault, "optimizer, as --optimizer"};
 const Setting<std::string> kOptimizerEntryLabel{
@@ -227,6 +229,7 @@ NamedProblem read_problem_entry(const ConfigTable& table) {
                        .settings = table.get_or(kProblemEntrySet, {}),
                        .schedule = read_study_schedule_key(table, kProblemEntrySchedule),
                        .configuration_sha256 = table.get(kProblemEntryHash),
+                       .inputs = table.get_or(kProblemEntryInputs, {}),
                        .place = table.describe_place(kProblemEntryName)};
   for (const auto* set : {&kProblemEntryTraining, &kProblemEntryValidation, &kProblemEntryTest}) {
     table.get(*set);  // the rest of the plan determines them

@@ -37,6 +37,7 @@ struct NamedProblem {
   std::vector<std::string> settings = {};
   std::optional<StudySchedule> schedule = {};
   std::string configuration_sha256 = {};  // as a resolved plan records it; empty: not known
+  std::vector<std::string> inputs = {};   // of a program, as NamedOptimizer::inputs
   std::string place = {};                 // as NamedOptimizer::place
 };
 

@@ -8,19 +8,27 @@
 namespace armwright {
 namespace {
 
-double measure_case_s(const StudyProblem& problem, CaseRole role, const std::string& set) {
-  constexpr int kCases = 32;
+double measure_case_s(const StudyPlan& plan, const StudyProblem& problem, CaseRole role,
+                      const std::string& set) {
+  const bool is_program = !problem.loaded.program.empty();
+  if (is_program && !plan.programs.may_simulate) {
+    return 0;
+  }
+  // A case of a user's program may take long.
+  const std::size_t cases = is_program ? 1 : 32;
   std::vector<double> x;
   for (const DecisionVariable& variable : problem.loaded.problem->description().variables) {
     x.push_back(variable.start);
   }
-  CaseBlock block{role, set, std::vector<std::uint64_t>(kCases)};
+  CaseBlock block{role, set, std::vector<std::uint64_t>(cases)};
   std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
-  problem.loaded.problem->evaluate(x, block);  // not timed: generates the cases, which are kept
+  if (!is_program) {
+    problem.loaded.problem->evaluate(x, block);  // not timed: generates the cases, which are kept
+  }
   const auto start = std::chrono::steady_clock::now();
   problem.loaded.problem->evaluate(x, block);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  return taken.count() / kCases;
+  return taken.count() / static_cast<double>(cases);
 }
 
 std::vector<Chunk> cut_chunks(std::span<const Cell> cells, std::span<const double> durations_s,
@@ -56,9 +64,9 @@ std::vector<double> measure_cell_durations_s(const StudyPlan& plan) {
     const StudyCost cost = calc_cost(one);
     const CaseSets& sets = problem.loaded.sets;
     const double all_s = static_cast<double>(cost.training) *
-                             measure_case_s(problem, CaseRole::training, sets.training) +
+                             measure_case_s(plan, problem, CaseRole::training, sets.training) +
                          static_cast<double>(cost.validation + cost.test) *
-                             measure_case_s(problem, CaseRole::test, sets.test);
+                             measure_case_s(plan, problem, CaseRole::test, sets.test);
     durations_s.push_back(kOverhead_s + all_s / static_cast<double>(cost.cells));
   }
   return durations_s;
