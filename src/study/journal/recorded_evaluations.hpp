@@ -33,7 +33,7 @@ struct EvaluationRecord {
   bool clipped = false;          // the optimizer asked for a point outside the bounds
   // As the optimizer asked, within the bounds that it was given. Empty if that is x.
   std::vector<double> proposed = {};
-  bool with_jacobian = false;    // the optimizer asked for exact derivatives
+  bool with_jacobian = false;  // the optimizer asked for exact derivatives
   CaseBlock cases;
   Evaluation evaluation;
 };
