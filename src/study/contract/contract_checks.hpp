@@ -1,5 +1,5 @@
 // The checks of the contract suite, the problems on which they run optimizers, and what they share.
-// For use inside the suite only; its interface is contract.hpp.
+// For use inside the suite and by tests; its interface is contract.hpp.
 #pragma once
 
 #include <functional>
