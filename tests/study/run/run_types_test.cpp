@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 
+#include <array>
 #include <functional>
 
 #include "base/expect_error.hpp"
@@ -171,6 +172,39 @@ TEST_F(VariableTypes, TheDatabaseHasTypesAndProposals) {
   EXPECT_THAT(query(file, "SELECT * FROM proposal"), testing::ElementsAre("1|[1.25,0.5,3.0,9.75]"));
   EXPECT_THAT(query(file, "SELECT number, x FROM evaluation WHERE role = 'training'"),
               testing::ElementsAre("0|[2.0,0.5,3.0,10.0]", "1|[1.0,0.5,3.0,10.0]"));
+}
+
+TEST_F(VariableTypes, TheResultNamesTypesAndTheFrontHasWords) {
+  body_ = [](Evaluator& evaluator) {
+    evaluator.evaluate(std::vector<std::vector<double>>{{3, 0.5, -3, 10}});
+  };
+  const auto result = run(make_plan(), "a");
+  ASSERT_TRUE(result && result->winner);
+  const RunResult read_back = parse_result(read_result("a"), "result.json");
+  EXPECT_EQ(to_json(read_back), read_result("a"));
+  ASSERT_EQ(read_back.discrete_variables.size(), 3u);
+  EXPECT_EQ(find_discrete(read_back, 1), nullptr) << "a real variable";
+  EXPECT_EQ(format_value(*find_discrete(read_back, 0), 3), "heavy");
+  EXPECT_EQ(format_value(*find_discrete(read_back, 2), -3), "-3");
+  EXPECT_THAT(read_file(temporary_ / "a" / "front.csv", 1 << 16), HasSubstr(",heavy,0.5,-3,10\n"));
+  run(make_small_plan(), "real");
+  EXPECT_THAT(read_result("real"), testing::Not(HasSubstr("discrete_variables")));
+}
+
+TEST_F(VariableTypes, AResultWithDamagedTypesIsRefused) {
+  ASSERT_TRUE(run(make_plan(), "a"));
+  const std::string result = read_result("a");
+  for (const auto& [from, to, reason] : std::vector<std::array<std::string, 3>>{
+           {R"("type": "integer")", R"("type": "word")", "unknown type"},
+           {R"("name": "teeth",)", R"("name": "tooth",)", "is none of its variables"},
+           {R"("thin",)", R"("thin", 3,)", "type must be string"}}) {
+    std::string damaged = result;
+    const std::size_t place = damaged.rfind(from);
+    ASSERT_NE(place, std::string::npos) << from;
+    damaged.replace(place, from.size(), to);
+    EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { parse_result(damaged, "result.json"); }),
+                HasSubstr(reason));
+  }
 }
 
 TEST_F(VariableTypes, TheDatabaseOfRealVariablesHasTheTablesOfVersionOne) {
