@@ -46,7 +46,19 @@ enum {
   ARMWRIGHT_LOCAL = 1u << 7,           /* descends from the start and ends by itself */
   ARMWRIGHT_PACED = 1u << 8,           /* divides the budget up beforehand */
   ARMWRIGHT_RESIDUALS = 1u << 9,       /* since 2.0: uses residuals, so that evaluations have them */
-  ARMWRIGHT_SAMPLING = 1u << 10        /* since 2.0: does not learn from evaluations */
+  ARMWRIGHT_SAMPLING = 1u << 10,       /* since 2.0: does not learn from evaluations */
+  ARMWRIGHT_INTEGERS = 1u << 11,       /* since 2.0: asks for whole numbers for integer variables.
+                                          Without it they look real, and points are rounded */
+  ARMWRIGHT_CATEGORIES = 1u << 12      /* since 2.0: treats the words of a category as words without
+                                          an order. Without it they look like integers */
+};
+
+/* Types of variables, since 2.0. A plugin without ARMWRIGHT_INTEGERS and ARMWRIGHT_CATEGORIES sees
+ * real variables only. */
+enum {
+  ARMWRIGHT_REAL_VARIABLE = 0,
+  ARMWRIGHT_INTEGER_VARIABLE = 1, /* whole numbers, bounds and start included */
+  ARMWRIGHT_CATEGORY_VARIABLE = 2 /* the number of a word, from 0 */
 };
 
 /* How an evaluation went. Objectives are finite always: a failed one shows the problem's penalty.
@@ -87,6 +99,9 @@ struct armwright_problem {
   const double* objective_weights;
   /* 1: evaluations have residuals. The sum of their squares is the objective, or its exponential. */
   size_t has_residuals;
+  const uint8_t* variable_types;
+  /* The words of each category, `upper` + 1 of them. NULL for other variables. */
+  const char* const* const* variable_choices;
 };
 
 /* Returns the number by which the run is judged: the weighted sum of the objectives or, without

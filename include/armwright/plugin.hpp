@@ -20,6 +20,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -41,6 +42,8 @@ struct Variable {
   double upper = 0;
   double start = 0;
   bool is_logarithmic = false;
+  int type = ARMWRIGHT_REAL_VARIABLE;
+  std::vector<std::string> choices = {};  // the words of a category
 };
 
 struct Problem {
@@ -52,8 +55,15 @@ struct Problem {
       variables.push_back({raw.variable_names[i], raw.variable_units[i], raw.lower[i], raw.upper[i],
                            raw.start[i], raw.is_logarithmic[i] != 0});
     }
-    if (raw.struct_size <= offsetof(armwright_problem, has_residuals)) {
+    if (raw.struct_size <= offsetof(armwright_problem, variable_choices)) {
       return;  // an armwright of version 1.0
+    }
+    for (std::size_t i = 0; i < raw.dimension; ++i) {
+      variables[i].type = raw.variable_types[i];
+      if (variables[i].type == ARMWRIGHT_CATEGORY_VARIABLE) {
+        const char* const* const words = raw.variable_choices[i];
+        variables[i].choices.assign(words, words + static_cast<std::size_t>(raw.upper[i]) + 1);
+      }
     }
     objective_units.assign(raw.objective_units, raw.objective_units + raw.objective_count);
     constraint_units.assign(raw.constraint_units, raw.constraint_units + raw.constraint_count);
@@ -79,11 +89,13 @@ struct Problem {
     }
     return objective_weights.empty() ? values.front() : sum;
   }
-  // The nearest point inside the box.
+  // The nearest point inside the box, with whole numbers for integers and categories.
   std::vector<double> clip(std::span<const double> x) const {
     std::vector<double> inside(x.begin(), x.end());
     for (std::size_t i = 0; i < inside.size(); ++i) {
-      inside[i] = std::clamp(inside[i], variables[i].lower, variables[i].upper);
+      const bool is_real = variables[i].type == ARMWRIGHT_REAL_VARIABLE;
+      inside[i] = std::clamp(is_real ? inside[i] : std::floor(inside[i] + 0.5), variables[i].lower,
+                             variables[i].upper);
     }
     return inside;
   }

@@ -13,7 +13,10 @@ from ._values import FloatArray, to_points
 
 @dataclass(frozen=True)
 class Variable:
-    """A decision variable. Bounds and start are in its unit. `scale` is "linear" or "logarithmic" (bounds and start then have one sign)."""
+    """A decision variable. Bounds and start are in its unit. `scale` is "linear" or "logarithmic" (bounds and start then have one sign).
+
+    `type` is "real", "integer" or "category". `choices` are the words of a category; its values are the numbers of the words, from 0.
+    """
 
     name: str
     unit: str
@@ -21,6 +24,14 @@ class Variable:
     upper: float
     start: float
     scale: str
+    type: str = "real"
+    choices: tuple[str, ...] = ()
+
+
+def _read_variable(content: dict[str, Any]) -> Variable:
+    values: dict[str, Any] = {key: content[key] for key in Variable.__dataclass_fields__ if key in content}
+    values["choices"] = tuple(content.get("choices", ()))
+    return Variable(**values)
 
 
 @dataclass(frozen=True)
@@ -45,7 +56,8 @@ class Description:
     variables : tuple of Variable
     lower, upper, start : array (d,)
         One value per variable, in its unit.
-    is_logarithmic : array of bool (d,)
+    is_logarithmic, is_discrete : array of bool (d,)
+        `is_discrete`: integers and categories, whose values are whole numbers.
     objectives : tuple of Quantity
         The quantities to minimise.
     weights : array (m,)
@@ -62,11 +74,12 @@ class Description:
     def __init__(self, content: dict[str, Any]) -> None:
         self._content = content
         self.name: str = content["name"]
-        self.variables = tuple(Variable(**{key: one[key] for key in Variable.__dataclass_fields__}) for one in content["variables"])
+        self.variables = tuple(_read_variable(one) for one in content["variables"])
         self.lower: FloatArray = np.array([v.lower for v in self.variables])
         self.upper: FloatArray = np.array([v.upper for v in self.variables])
         self.start: FloatArray = np.array([v.start for v in self.variables])
         self.is_logarithmic: npt.NDArray[np.bool_] = np.array([v.scale == "logarithmic" for v in self.variables], dtype=bool)
+        self.is_discrete: npt.NDArray[np.bool_] = np.array([v.type != "real" for v in self.variables], dtype=bool)
         self.objectives = tuple(Quantity(one["name"], one["unit"]) for one in content["objectives"])
         self.constraints = tuple(Quantity(one["name"], one["unit"]) for one in content["constraints"])
         self.metrics = tuple(Quantity(one["name"], one["unit"]) for one in content.get("metrics", []))
@@ -82,8 +95,14 @@ class Description:
         return len(self.variables)
 
     def clip(self, points: npt.ArrayLike) -> FloatArray:
-        """Returns the nearest points within the bounds, in the shape of `points`: (n, d), or (d,) for one point."""
-        return _restore_shape(np.clip(to_points(points), self.lower, self.upper), points)
+        """Returns the nearest points within the bounds, in the shape of `points`: (n, d), or (d,) for one point.
+
+        Integers and categories are rounded.
+        """
+        given = to_points(points)
+        if self.is_discrete.any():
+            given = np.where(self.is_discrete, np.floor(given + 0.5), given)
+        return _restore_shape(np.clip(given, self.lower, self.upper), points)
 
     def to_unit(self, points: npt.ArrayLike) -> FloatArray:
         """Returns points as fractions, (n, d) or (d,) as given: 0 at the lower bound, 1 at the upper bound, on the scale of each variable.

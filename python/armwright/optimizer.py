@@ -22,7 +22,7 @@ from .problem import STATUSES
 
 OptionValue = Union[bool, int, float, str]
 CAPABILITIES = ("bounds", "constraints", "multi_objective", "batch", "noisy", "residuals", "stochastic", "generations", "local", "sampling",
-                "paced")
+                "paced", "integer", "categorical")
 _LARGEST_INTEGER = 2**53  # the largest integer below which doubles represent every integer
 _LARGEST_NUMBER = 1e300
 _LAST_LINES = 10  # that are kept of a traceback
@@ -210,7 +210,8 @@ class Optimizer:
         One line that says what the optimizer does (default: the first line of the docstring), and where it comes from.
     capabilities : collection of str
         A subset of CAPABILITIES. "generations": the optimizer calls begin_generation(), so schedules with fresh cases work. "residuals":
-        the scores contain residuals. "constraints", "multi_objective": the optimizer uses them.
+        the scores contain residuals. "constraints", "multi_objective": the optimizer uses them. "integer", "categorical": the problem's variables
+        keep their types; otherwise they look real (categories: integers), and the points are rounded.
     options : sequence of Option
     requirements : mapping
         The least that a problem must have: "objectives" and "variables" are numbers, "residuals" is true or false.

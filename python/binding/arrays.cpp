@@ -38,6 +38,14 @@ void check_points(const Numbers& points, std::span<const DecisionVariable> varia
                                      variable.unit.empty() ? "" : " " + variable.unit)
                        : std::string("a finite number")));
       }
+      if (inside && settle_value(variable, x[i]) != x[i]) {
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("{}[{}, {}] ({}) is {}; this variable is {}, so it must be a whole "
+                        "number: clip() rounds",
+                        name, row, i, variable.name, format_exact(x[i]),
+                        variable.type == VariableType::integer ? "an integer" : "a category"));
+      }
     }
   }
 }

@@ -61,6 +61,10 @@ json describe(const ProblemDescription& problem) {
                          {"upper", variable.upper},
                          {"start", variable.start},
                          {"scale", variable.scale == Scale::linear ? "linear" : "logarithmic"}});
+    if (variable.type != VariableType::real) {
+      variables.back()["type"] = to_string(variable.type);
+      variables.back()["choices"] = variable.choices;
+    }
   }
   json requirements = json::array();
   for (const RequiredMetric& required : problem.requirements) {

@@ -151,6 +151,23 @@ TEST(ContractSuite, FindsOutWhoAsksForNonsense) {
   EXPECT_BROKEN("Points", make_row([](Evaluator& e, std::uint64_t) { ask(e, {}); }), "dimension");
 }
 
+TEST(ContractSuite, FindsOutWhoAsksForFractions) {
+  const auto asking_for = [](std::size_t place, Capabilities capabilities) {
+    return make_row(
+        [place](Evaluator& evaluator, std::uint64_t) {
+          std::vector<double> x = get_start(evaluator);
+          x[place % x.size()] += 0.25;
+          ask(evaluator, x);
+        },
+        capabilities);
+  };
+  EXPECT_BROKEN("Types", asking_for(2, {.integer = true}),
+                "on mixed_bowl: evaluation 0 asks for teeth = 20.25, and it declares 'integer'");
+  EXPECT_BROKEN("Types", asking_for(0, {.categorical = true}),
+                "asks for oil = 0.25, and it declares 'categorical'");
+  EXPECT_EQ(find("Types", asking_for(0, {})).outcome, ContractOutcome::exempt);
+}
+
 TEST(ContractSuite, FindsOutWhoIsNotRepeatable) {
   auto calls = std::make_shared<int>(0);
   const OptimizerRow row = make_row([calls](Evaluator& evaluator, std::uint64_t) {

@@ -39,6 +39,11 @@ void check_result(const RunResult& result) {
   get_target(result);
   for (const JudgedCandidate& judged : result.judged) {
     require(judged.candidate.x.size() == result.variable_names.size(), "a point out of line");
+    for (std::size_t i = 0; i < judged.candidate.x.size(); ++i) {
+      if (const DecisionVariable* const discrete = find_discrete(result, i)) {
+        format_value(*discrete, judged.candidate.x[i]);
+      }
+    }
     check_sizes(result, judged.validation);
   }
   check_sizes(result, result.test);

@@ -44,6 +44,18 @@ class ProblemTest(FolderTest):
             self.assertEqual(convert(problem.to_unit(problem.start).tolist()).shape, (20,))
             self.assertEqual(one.tobytes(), many[1].tobytes())
 
+    def test_discrete_variables_are_rounded(self):
+        real = {"name": "gain", "unit": "", "lower": -5, "upper": 5, "start": 1, "scale": "linear"}
+        teeth = {"name": "teeth", "unit": "", "lower": 1, "upper": 1000, "start": 3, "scale": "logarithmic", "type": "integer", "choices": []}
+        oil = {"name": "oil", "unit": "", "lower": 0, "upper": 2, "start": 0, "scale": "linear", "type": "category", "choices": ["a", "b", "c"]}
+        problem = armwright.Description({"name": "mixed", "variables": [real, teeth, oil], "objectives": [{"name": "f", "unit": ""}],
+                                         "objective_weights": [], "constraints": [], "has_residuals": False})
+        self.assertEqual([v.type for v in problem.variables], ["real", "integer", "category"])
+        self.assertEqual(problem.variables[2].choices, ("a", "b", "c"))
+        self.assertEqual(problem.is_discrete.tolist(), [False, True, True])
+        self.assertEqual(problem.clip([[0.4, 6.5, 1.4], [9, 0.2, 2.6]]).tolist(), [[0.4, 7, 1], [5, 1, 2]])
+        self.assertEqual(problem.from_unit([0.5, 1, 0.5]).tolist(), [0, 1000, 1])
+
     def test_results_print_as_one_line(self):
         done = repr(self.problem.evaluate(self.points, cases=1))
         self.assertRegex(done, r"^<armwright.Evaluations: 40 of 40 ok, smallest value [0-9.e-]+>$")

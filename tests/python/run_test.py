@@ -169,6 +169,23 @@ class RunTest(FolderTest):
 
         self.assertIn("Repeatable", [one.check for one in armwright.check_optimizer(Forgetful) if one.outcome == "broken"])
 
+    def test_types_of_variables_are_given_to_those_who_declare_them(self):
+        seen = set()
+
+        class Typed(armwright.Optimizer):
+            capabilities = ("bounds", "integer", "categorical")
+
+            def minimize(self, evaluator, seed):
+                seen.update(variable.type for variable in evaluator.problem.variables)
+                evaluator.evaluate(evaluator.problem.clip(evaluator.problem.start + 0.3))
+
+        self.assertEqual({one.check: one.outcome for one in armwright.check_optimizer(Typed)}["Types"], "held")
+        self.assertEqual(seen, {"real", "integer", "category"})
+        seen.clear()
+        Typed.capabilities = ("bounds",)
+        self.assertEqual({one.check: one.outcome for one in armwright.check_optimizer(Typed)}["Types"], "exempt")
+        self.assertEqual(seen, {"real"})
+
     def test_generations_residuals_and_recommendations(self):
         run = armwright.optimize("sphere", Generations, budget=30, set=SMALL)
         self.assertEqual(run.counts["generations"], 10)

@@ -52,7 +52,10 @@ inline void expect_same(const EvaluationRecord& got, const EvaluationRecord& wan
   EXPECT_EQ(got.index, wanted.index);
   EXPECT_EQ(got.generation, wanted.generation);
   EXPECT_EQ(bits(got.x), bits(wanted.x));
+  EXPECT_EQ(bits(got.proposed), bits(wanted.proposed));
   EXPECT_EQ(got.clipped, wanted.clipped);
+  EXPECT_EQ(got.with_jacobian, wanted.with_jacobian);
+  EXPECT_EQ(bits(got.evaluation.jacobian), bits(wanted.evaluation.jacobian));
   EXPECT_EQ(got.cases.role, wanted.cases.role);
   EXPECT_EQ(got.cases.set, wanted.cases.set);
   EXPECT_EQ(got.cases.numbers, wanted.cases.numbers);

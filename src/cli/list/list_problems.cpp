@@ -61,6 +61,11 @@ std::string format_required(const ProblemDescription& description, const Style& 
   return table.format(style) + "\n";
 }
 
+std::string format_allowed(const DecisionVariable& variable, double value) {
+  return variable.type == VariableType::real ? format_significant(value)
+                                             : sanitize(format_value(variable, value));
+}
+
 std::string explain_problem(const std::string& name, const Style& style) {
   const LoadedProblem loaded = load_problem(name);
   const ProblemDescription& description = loaded.problem->description();
@@ -78,12 +83,27 @@ std::string explain_problem(const std::string& name, const Style& style) {
   text += fmt::format(", {} decision variables, {} constraints; a case is a {}\n\n",
                       description.variables.size(), description.constraints.size(),
                       description.cost_unit);
-  Table variables(
-      {{"variable", false}, {"unit", false}, {"start"}, {"lower"}, {"upper"}, {"scale", false}});
+  const bool discrete = has_discrete(description.variables);
+  std::vector<Column> columns = {{"variable", false}, {"unit", false}, {"start"},
+                                 {"lower"},           {"upper"},       {"scale", false}};
+  if (discrete) {
+    columns.push_back({"type", false, true});
+  }
+  Table variables(columns);
   for (const DecisionVariable& variable : description.variables) {
-    variables.add_row({variable.name, variable.unit, format_significant(variable.start),
-                       format_significant(variable.lower), format_significant(variable.upper),
-                       variable.scale == Scale::logarithmic ? "logarithmic" : "linear"});
+    std::vector<std::string> row = {
+        variable.name,
+        variable.unit,
+        format_allowed(variable, variable.start),
+        format_allowed(variable, variable.lower),
+        format_allowed(variable, variable.upper),
+        variable.scale == Scale::logarithmic ? "logarithmic" : "linear"};
+    if (discrete) {
+      row.push_back(variable.type == VariableType::category
+                        ? "category: " + sanitize(join(variable.choices, ", "))
+                        : to_string(variable.type));
+    }
+    variables.add_row(row);
   }
   Table table({{"setting (for --set)", false}, {"value", false}});
   collect_settings(settings, "", table);
@@ -103,6 +123,12 @@ json explain_problem_as_json(const std::string& name) {
          {"lower", variable.lower},
          {"upper", variable.upper},
          {"scale", variable.scale == Scale::logarithmic ? "logarithmic" : "linear"}});
+    if (variable.type != VariableType::real) {
+      variables.back()["type"] = to_string(variable.type);
+    }
+    if (variable.type == VariableType::category) {
+      variables.back()["choices"] = variable.choices;
+    }
   }
   json objectives = json::array();
   for (const Quantity& objective : description.objectives) {
@@ -150,6 +176,19 @@ std::string describe_variables(const std::vector<DecisionVariable>& variables) {
   return fmt::format("{} of {}", join(kinds, ", "), join(owners, ", "));
 }
 
+// Returns the number of variables of each type: "2 real, 3 integer".
+std::string describe_types(const std::vector<DecisionVariable>& variables) {
+  std::vector<std::string> texts;
+  for (const VariableType type :
+       {VariableType::real, VariableType::integer, VariableType::category}) {
+    const auto count = std::ranges::count(variables, type, &DecisionVariable::type);
+    if (count > 0) {
+      texts.push_back(fmt::format("{} {}", count, to_string(type)));
+    }
+  }
+  return join(texts, ", ");
+}
+
 std::string describe_limits(const ProblemDescription& description) {
   std::vector<std::string> texts;
   for (const Limit& limit : description.limits) {
@@ -176,6 +215,9 @@ std::string format_problem(const std::string& name, const LoadedProblem& loaded)
                       escape_markdown(list_quantities(description.objectives)),
                       description.variables.size(),
                       escape_markdown(describe_variables(description.variables)));
+  if (has_discrete(description.variables)) {
+    text += fmt::format("- Types: {}\n", escape_markdown(describe_types(description.variables)));
+  }
   if (!description.constraints.empty()) {
     text += fmt::format("- Constraints: {}\n", escape_markdown(describe_limits(description)));
   }

@@ -49,7 +49,10 @@ std::string format_vector(const RunResult& result, const std::vector<double>& x,
                           const Style& style) {
   Table table({{"variable", false}, {"value"}});
   for (std::size_t i = 0; i < x.size(); ++i) {
-    table.add_row({sanitize(result.variable_names.at(i)), format_significant(x[i], 6)});
+    const DecisionVariable* const discrete = find_discrete(result, i);
+    table.add_row(
+        {sanitize(result.variable_names.at(i)),
+         discrete ? sanitize(format_value(*discrete, x[i])) : format_significant(x[i], 6)});
   }
   return table.format(style, 2);
 }

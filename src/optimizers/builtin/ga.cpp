@@ -82,7 +82,7 @@ class GeneticAlgorithm : public Optimizer {
     while (next.size() < population_size_) {
       const std::size_t first = select(fitness, tournament_probability_, random);
       const std::size_t second = select(fitness, tournament_probability_, random);
-      Genome child = cross(population[first], population[second], crossover_, random);
+      Genome child = cross(population[first], population[second], variables, crossover_, random);
       mutate(child, variables, mutation_, random);
       next.push_back(std::move(child));
     }
@@ -134,28 +134,71 @@ double calc_crossed_gene(double base, double other, double sigma) {
   return 0.5 * (base + other) + sigma * (base - other);
 }
 
-Genome cross(const Genome& first, const Genome& second, const CrossoverSettings& settings,
-             RandomStream& random) {
+Genome cross(const Genome& first, const Genome& second, std::span<const DecisionVariable> variables,
+             const CrossoverSettings& settings, RandomStream& random) {
   const bool first_is_base = random.bernoulli(0.5);
   const Genome& base = first_is_base ? first : second;
   const Genome& other = first_is_base ? second : first;
   Genome child = base;
   for (std::size_t i = 0; i < child.size(); ++i) {
     const bool is_crossed = random.bernoulli(settings.probability);
-    if (is_crossed) {
+    if (is_crossed && variables[i].type == VariableType::category) {
+      child[i] = random.bernoulli(0.5) ? base[i] : other[i];
+    } else if (is_crossed) {
       const double sigma = random.uniform(0, settings.extent);
       child[i] = calc_crossed_gene(base[i], other[i], sigma);
+      if (variables[i].type == VariableType::integer) {
+        child[i] = settle_value(variables[i], child[i]);
+      }
     }
   }
   return child;
 }
 
-double calc_mutated_gene(const DecisionVariable& variable, double gene, double factor, double u) {
+namespace {
+
+double calc_mutated_number(const DecisionVariable& variable, double gene, double factor, double u) {
   if (variable.scale == Scale::logarithmic) {
     return gene * std::exp(u * std::log(factor));
   }
   const double share = std::log(factor) / std::log(100.0);
   return gene + u * share * 0.5 * (variable.upper - variable.lower);
+}
+
+double calc_mutated_integer(const DecisionVariable& variable, double gene, double factor,
+                            double u) {
+  const double moved = settle_value(variable, calc_mutated_number(variable, gene, factor, u));
+  if (moved != gene) {
+    return moved;
+  }
+  // On a logarithmic scale, a negative u makes the magnitude smaller.
+  const bool is_mirrored = variable.scale == Scale::logarithmic && gene < 0;
+  const double step = (u < 0) == is_mirrored ? 1 : -1;
+  const double next = settle_value(variable, gene + step);
+  return next != gene ? next : settle_value(variable, gene - step);
+}
+
+double calc_mutated_category(const DecisionVariable& variable, double gene, double u) {
+  const double others = variable.upper - variable.lower;
+  if (others == 0) {
+    return gene;
+  }
+  const double drawn = std::min(std::floor(0.5 * (u + 1) * others), others - 1);
+  return variable.lower + drawn + (variable.lower + drawn < gene ? 0 : 1);
+}
+
+}  // namespace
+
+double calc_mutated_gene(const DecisionVariable& variable, double gene, double factor, double u) {
+  switch (variable.type) {
+    case VariableType::integer:
+      return calc_mutated_integer(variable, gene, factor, u);
+    case VariableType::category:
+      return calc_mutated_category(variable, gene, u);
+    case VariableType::real:
+      break;
+  }
+  return calc_mutated_number(variable, gene, factor, u);
 }
 
 void mutate(Genome& genome, std::span<const DecisionVariable> variables,
@@ -197,7 +240,9 @@ OptimizerRow make_ga_row() {
                        .batch = true,
                        .noisy = true,
                        .stochastic = true,
-                       .generations = true},
+                       .generations = true,
+                       .integer = true,
+                       .categorical = true},
       .options =
           {
               {.name = "population",

@@ -14,6 +14,9 @@
 //   leave zero and change its sign. The step covers the same share of the box as the factor covers
 //   of a logarithmic box from base/100 to base*100.
 // - Constraints: feasibility first (feasibility.hpp).
+// - Integers stay whole: a crossed or mutated gene is rounded, and a mutation moves it by at least
+//   1. A category is crossed by taking the word of either parent, and mutated by drawing another
+//   word, each with the same probability.
 // - The options `generations` and `include_prototype`. Limits: several objectives count as their
 //   weighted sum. Crossover never leaves the span of the parents (extent <= 1/2). So an optimum
 //   outside the span of the first generation, a factor of 10 about the start, is reached by
@@ -57,13 +60,16 @@ std::size_t select(std::span<const Fitness> population, double probability, Rand
 double calc_crossed_gene(double base, double other, double sigma);
 // Makes a child. One of the parents, chosen at random, is the base; it gives the genes that are not
 // crossed. Draws in this order: the base; then for each gene whether it is crossed and, if so,
-// sigma.
-Genome cross(const Genome& first, const Genome& second, const CrossoverSettings& settings,
-             RandomStream& random);
+// sigma, or for a category which parent gives the word.
+Genome cross(const Genome& first, const Genome& second, std::span<const DecisionVariable> variables,
+             const CrossoverSettings& settings, RandomStream& random);
 
 // Returns the mutated gene, for u in [-1, 1):
 //   logarithmic scale: gene * exp(u ln factor)
 //   linear scale:      gene + u (ln factor / ln 100) (upper - lower) / 2
+// Of an integer, this is moved into the bounds and rounded. If that is the gene itself, returns the
+// next whole number in the direction of u or, at a bound, in the other direction. Of a category,
+// returns one of the other words.
 double calc_mutated_gene(const DecisionVariable& variable, double gene, double factor, double u);
 // Mutates the genome. Draws for each gene whether it is mutated and, if so, u.
 void mutate(Genome& genome, std::span<const DecisionVariable> variables,

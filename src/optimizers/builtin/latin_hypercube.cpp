@@ -69,7 +69,12 @@ std::vector<OptimizerRow> make_latin_hypercube_rows() {
       .summary = "Latin hypercube sampling: covers every variable's range evenly",
       .source = "McKay, Beckman and Conover 1979, A comparison of three methods for selecting "
                 "values of input variables in the analysis of output from a computer code",
-      .capabilities = {.bounds = true, .batch = true, .stochastic = true, .sampling = true},
+      .capabilities = {.bounds = true,
+                       .batch = true,
+                       .stochastic = true,
+                       .sampling = true,
+                       .integer = true,
+                       .categorical = true},
       .options = {{.name = "samples",
                    .description = "points of a design; one design follows another",
                    .fallback = std::int64_t{100},

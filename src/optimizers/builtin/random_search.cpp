@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optimizers/interface/treated_problem.hpp"
+
 namespace armwright {
 namespace {
 
@@ -13,6 +15,8 @@ class RandomSearch : public Optimizer {
 
   void minimize(Evaluator& evaluator, std::uint64_t seed) override {
     const std::vector<DecisionVariable>& variables = evaluator.problem().variables;
+    // In these ranges every value of a discrete variable has the same share.
+    const std::vector<DecisionVariable> ranges = adapt_variables(variables, {});
     RandomStream random("optimizer/random", seed);
     std::vector<std::vector<double>> points;
     bool is_start = true;
@@ -20,7 +24,8 @@ class RandomSearch : public Optimizer {
       points.assign(batch_, std::vector<double>(variables.size()));
       for (std::vector<double>& point : points) {
         for (std::size_t i = 0; i < variables.size(); ++i) {
-          point[i] = is_start ? variables[i].start : draw_coordinate(variables[i], random);
+          point[i] = is_start ? variables[i].start
+                              : settle_value(variables[i], draw_coordinate(ranges[i], random));
         }
         is_start = false;
       }
@@ -51,7 +56,12 @@ std::vector<OptimizerRow> make_random_search_rows() {
       .name = "random",
       .summary = "Random search: independent points, uniform on every variable's scale",
       .source = "Brooks 1958, A discussion of random methods for seeking maxima",
-      .capabilities = {.bounds = true, .batch = true, .stochastic = true, .sampling = true},
+      .capabilities = {.bounds = true,
+                       .batch = true,
+                       .stochastic = true,
+                       .sampling = true,
+                       .integer = true,
+                       .categorical = true},
       .options = {{.name = "batch",
                    .description = "points asked for at a time; has no influence on the points",
                    .fallback = std::int64_t{32},

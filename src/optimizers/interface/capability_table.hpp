@@ -15,7 +15,7 @@ struct CapabilityRow {
   const char* without;  // what an optimizer without it does
 };
 
-inline constexpr std::array<CapabilityRow, 11> kCapabilityTable{{
+inline constexpr std::array<CapabilityRow, 13> kCapabilityTable{{
     {"bounds", &Capabilities::bounds, "keeps its points within the bounds",
      "may propose points outside the bounds: the nearest point inside is evaluated"},
     {"constraints", &Capabilities::constraints, "sees the constraints apart from the objective",
@@ -46,6 +46,11 @@ inline constexpr std::array<CapabilityRow, 11> kCapabilityTable{{
     {"paced", &Capabilities::paced,
      "plans with the whole budget: a larger budget changes the run from its beginning",
      "does not plan with the budget: a larger budget only makes the run longer"},
+    {"integer", &Capabilities::integer, "proposes whole numbers for integer variables",
+     "treats integer variables as real ones: the run rounds its points"},
+    {"categorical", &Capabilities::categorical,
+     "treats the words of a category as words without an order",
+     "treats a category as the numbers of its words, in their order"},
 }};
 
 }  // namespace armwright

@@ -5,8 +5,8 @@
 //
 // A point is a decision vector: one number per decision variable, in the variable's own unit and
 // not scaled to 0..1. In a run, a coordinate outside its bounds is replaced by the nearest bound,
-// and NaN by the variable's start value. A point with another number of coordinates is an
-// OptimizerFailure.
+// and NaN by the variable's start value. Coordinates of discrete variables are then rounded
+// (treated_problem.hpp). A point with another number of coordinates is an OptimizerFailure.
 #pragma once
 
 #include <cstdint>
@@ -53,6 +53,8 @@ constexpr std::int64_t calc_jacobian_charge(std::size_t variables) {
 class Evaluator {
  public:
   virtual ~Evaluator() = default;
+  // Returns the problem as the optimizer can treat it: discrete variables are real ones if its
+  // capabilities do not include their type.
   virtual const ProblemDescription& problem() const = 0;
 
   // Evaluates the points and returns one score per point, in the same order. Returns only the first

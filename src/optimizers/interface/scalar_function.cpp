@@ -20,8 +20,19 @@ double calc_merit(const ProblemDescription& problem, const Score& score, double 
          constraint_weight * problem.violation_scale * calc_violation(score.constraint_values);
 }
 
+std::vector<double> ScalarFunction::to_point(std::span<const double> coordinates) const {
+  std::vector<double> point = space_.to_point(coordinates);
+  const std::vector<DecisionVariable>& variables = evaluator_.problem().variables;
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    if (variables[i].type != VariableType::real) {
+      point[i] = settle_value(variables[i], point[i]);
+    }
+  }
+  return point;
+}
+
 Score ScalarFunction::evaluate(std::span<const double> coordinates) {
-  return evaluate_point(space_.to_point(coordinates));
+  return evaluate_point(to_point(coordinates));
 }
 
 Score ScalarFunction::evaluate_point(const std::vector<double>& point) {
@@ -33,7 +44,7 @@ Score ScalarFunction::evaluate_point(const std::vector<double>& point) {
 }
 
 Score ScalarFunction::evaluate_with_jacobian(std::span<const double> coordinates) {
-  const std::vector<double> point = space_.to_point(coordinates);
+  const std::vector<double> point = to_point(coordinates);
   std::vector<Score> scores = evaluator_.evaluate_with_jacobian({&point, 1});
   if (scores.empty()) {
     throw EvaluatorStopped{};
@@ -46,7 +57,7 @@ std::vector<Score> ScalarFunction::evaluate_batch(
   std::vector<std::vector<double>> points;
   points.reserve(coordinates.size());
   std::ranges::transform(coordinates, std::back_inserter(points),
-                         [this](const auto& one) { return space_.to_point(one); });
+                         [this](const auto& one) { return to_point(one); });
   std::vector<Score> scores = evaluator_.evaluate(points);
   if (scores.size() < points.size()) {
     throw EvaluatorStopped{};

@@ -1,5 +1,7 @@
 // An Evaluator in the form that wrapped libraries need: a function of coordinates
 // (search_space.hpp) that a library calls at any time, and that ends the run by an exception.
+// Discrete variables that the optimizer gets are real in these coordinates
+// (treated_problem.hpp), and the points that are evaluated are rounded.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +10,7 @@
 
 #include "optimizers/interface/optimizer.hpp"
 #include "optimizers/interface/search_space.hpp"
+#include "optimizers/interface/treated_problem.hpp"
 
 namespace armwright {
 
@@ -37,7 +40,7 @@ inline std::uint32_t fold_seed(std::uint64_t seed) {
 class ScalarFunction {
  public:
   explicit ScalarFunction(Evaluator& evaluator)
-      : evaluator_(evaluator), space_(evaluator.problem().variables) {}
+      : evaluator_(evaluator), space_(adapt_variables(evaluator.problem().variables, {})) {}
 
   const SearchSpace& space() const { return space_; }
   Evaluator& evaluator() const { return evaluator_; }
@@ -49,6 +52,8 @@ class ScalarFunction {
   Score evaluate_with_jacobian(std::span<const double> coordinates);  // with respect to the point
 
  private:
+  std::vector<double> to_point(std::span<const double> coordinates) const;
+
   Evaluator& evaluator_;
   SearchSpace space_;
 };

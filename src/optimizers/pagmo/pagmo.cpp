@@ -25,6 +25,7 @@ OptimizerRow make_row(PagmoMethod method, std::string summary, std::string sourc
   capabilities.batch = method.batch;
   capabilities.paced = method.paced;
   capabilities.stochastic = !method.ends;
+  capabilities.integer = method.integer;
   return {.name = method.row,
           .summary = std::move(summary),
           .source = std::move(source),
@@ -141,7 +142,7 @@ std::vector<OptimizerRow> make_swarm_rows() {
           "function optimization: artificial bee colony (ABC) algorithm",
           population(20, 2,
                      {count("limit", "failures after which a source is abandoned", 20, 1, 1e6)})),
-      make_row({.algorithm = "gaco", .batch = true, .constraints = true},
+      make_row({.algorithm = "gaco", .batch = true, .constraints = true, .integer = true},
                "Extended ant colony: samples about an archive, oracle penalty",
                "Schlueter, Egea and Banga 2009, Extended ant colony optimization for non-convex "
                "mixed integer nonlinear programming",
@@ -173,7 +174,8 @@ std::vector<OptimizerRow> make_evolution_rows() {
                "combinatorial optimization: a decade of results",
                population(5, 1)),
       make_row(
-          {.algorithm = "sga"}, "Simple genetic algorithm with a choice of operators",
+          {.algorithm = "sga", .integer = true},
+          "Simple genetic algorithm with a choice of operators",
           "Holland 1975, Adaptation in natural and artificial systems",
           population(
               32, 2,
@@ -189,7 +191,7 @@ std::vector<OptimizerRow> make_evolution_rows() {
                       {"exponential", "binomial", "single", "sbx"}),
                choice("mutation", "how children change", {"polynomial", "gaussian", "uniform"}),
                choice("selection", "how parents are found", {"tournament", "truncated"})})),
-      make_row({.algorithm = "ihs", .constraints = true, .paced = true},
+      make_row({.algorithm = "ihs", .constraints = true, .paced = true, .integer = true},
                "Improved harmony search: steps shrink over the budget",
                "Mahdavi, Fesanghary and Damangir 2007, An improved harmony search algorithm for "
                "solving optimization problems",
@@ -243,7 +245,7 @@ std::vector<OptimizerRow> make_point_rows() {
 std::vector<OptimizerRow> make_multi_objective_rows() {
   return {
       make_row(
-          {.algorithm = "nsga2", .batch = true, .multi_objective = true},
+          {.algorithm = "nsga2", .batch = true, .multi_objective = true, .integer = true},
           "NSGA-II: genetic algorithm by non-dominated sorting and crowding",
           "Deb, Pratap, Agarwal and Meyarivan 2002, A fast and elitist multiobjective "
           "genetic algorithm: NSGA-II",
@@ -273,7 +275,7 @@ std::vector<OptimizerRow> make_multi_objective_rows() {
                {.name = "preserve_diversity",
                 .description = "realb and limit apply",
                 .fallback = true}})),
-      make_row({.algorithm = "maco", .batch = true, .multi_objective = true},
+      make_row({.algorithm = "maco", .batch = true, .multi_objective = true, .integer = true},
                "MHACO: ant colony whose solutions are ranked by hypervolume",
                "Acciarini, Izzo and Mooij 2020, MHACO: a multi-objective hypervolume-based ant "
                "colony optimizer for space trajectory optimization",

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
 #include <span>
@@ -27,6 +28,9 @@ namespace {
 constexpr double kViolatedBeyondMeasure = 1e12;
 
 // Evaluates points and returns pagmo's fitness vectors: the objectives, then the constraints.
+// pagmo's coordinates are those of the search space with the integers behind the others, as pagmo
+// wants them. A logarithmic integer is none of its integers: its steps are factors, and
+// ScalarFunction rounds it.
 class PagmoBridge {
  public:
   PagmoBridge(const PagmoMethod& method, const Options& options, Evaluator& evaluator);
@@ -39,11 +43,15 @@ class PagmoBridge {
   std::size_t constraint_count() const {
     return method_.constraints ? problem().constraints.size() : 0;
   }
+  std::size_t integer_count() const { return integer_count_; }
   std::int64_t evaluation_count() const { return evaluation_count_; }
   // True after an exception of the evaluator has passed through pagmo.
   bool has_thrown() const { return has_thrown_; }
 
-  std::vector<std::vector<double>> evaluate(std::span<const std::vector<double>> coordinates);
+  // Returns pagmo's coordinates of coordinates of the search space. Rounds the integers.
+  std::vector<double> arrange(std::span<const double> coordinates) const;
+  // Takes pagmo's coordinates.
+  std::vector<std::vector<double>> evaluate(std::span<const std::vector<double>> arranged);
 
  private:
   void require_finite(std::span<const double> coordinates) const;
@@ -52,6 +60,8 @@ class PagmoBridge {
   const PagmoMethod& method_;
   double constraint_weight_;
   ScalarFunction function_;
+  std::vector<std::size_t> order_;  // pagmo's coordinate i is coordinate order_[i] of the space
+  std::size_t integer_count_ = 0;
   std::int64_t evaluation_count_ = 0;
   bool has_thrown_ = false;
 };
@@ -68,23 +78,47 @@ struct BridgedPagmoProblem {
   std::vector<double> batch_fitness(const std::vector<double>& all) const;
 
   std::pair<std::vector<double>, std::vector<double>> get_bounds() const {
-    return {bridge->space().lower(), bridge->space().upper()};
+    return {bridge->arrange(bridge->space().lower()), bridge->arrange(bridge->space().upper())};
   }
   // pagmo calls these on a default-constructed object as well.
   std::size_t get_nobj() const { return bridge == nullptr ? 1 : bridge->objective_count(); }
   std::size_t get_nic() const { return bridge == nullptr ? 0 : bridge->constraint_count(); }
+  std::size_t get_nix() const { return bridge == nullptr ? 0 : bridge->integer_count(); }
 };
 
 PagmoBridge::PagmoBridge(const PagmoMethod& method, const Options& options, Evaluator& evaluator)
     : method_(method),
       constraint_weight_(method.constraints ? 0 : options.get_number("constraint_weight")),
-      function_(evaluator) {}
+      function_(evaluator) {
+  const std::vector<DecisionVariable>& variables = problem().variables;
+  order_.resize(variables.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
+  const auto integers = std::ranges::stable_partition(order_, [&](std::size_t i) {
+    return variables[i].type == VariableType::real || variables[i].scale == Scale::logarithmic;
+  });
+  integer_count_ = integers.size();
+}
+
+std::vector<double> PagmoBridge::arrange(std::span<const double> coordinates) const {
+  const std::size_t reals = order_.size() - integer_count_;
+  std::vector<double> arranged;
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const double value = coordinates[order_[i]];
+    arranged.push_back(i < reals ? value : settle_value(problem().variables[order_[i]], value));
+  }
+  return arranged;
+}
 
 std::vector<std::vector<double>> PagmoBridge::evaluate(
-    std::span<const std::vector<double>> coordinates) {
+    std::span<const std::vector<double>> arranged) {
   try {
-    for (const std::vector<double>& one : coordinates) {
+    std::vector<std::vector<double>> coordinates;
+    for (const std::vector<double>& one : arranged) {
       require_finite(one);
+      coordinates.emplace_back(one.size());
+      for (std::size_t i = 0; i < one.size(); ++i) {
+        coordinates.back()[order_[i]] = one[i];
+      }
     }
     const std::vector<Score> scores = function_.evaluate_batch(coordinates);
     evaluation_count_ += static_cast<std::int64_t>(scores.size());
@@ -263,7 +297,7 @@ class PagmoOptimizer : public Optimizer {
   pagmo::population make_population(PagmoBridge& bridge, const pagmo::problem& problem,
                                     std::uint64_t seed) const {
     const SearchSpace& space = bridge.space();
-    std::vector<std::vector<double>> individuals = {space.start()};
+    std::vector<std::vector<double>> individuals = {bridge.arrange(space.start())};
     RandomStream random("optimizer/pagmo:" + method_.algorithm, seed);
     std::vector<double> lower = space.lower();
     std::vector<double> upper = space.upper();
@@ -274,7 +308,7 @@ class PagmoOptimizer : public Optimizer {
       upper[i] = std::min(upper[i], space.start()[i] + reach);
     }
     while (std::ssize(individuals) < population_size()) {
-      individuals.push_back(space.draw_between(lower, upper, random));
+      individuals.push_back(bridge.arrange(space.draw_between(lower, upper, random)));
     }
     return evaluate_population(bridge, problem, individuals, fold_seed(seed));
   }

@@ -23,6 +23,7 @@ struct PagmoMethod {
   bool multi_objective = false;  // handles every objective; otherwise their weighted sum counts
   bool paced = false;            // its schedule needs the number of evaluations
   bool ends = false;             // it ends when it has converged; it would only repeat itself
+  bool integer = false;          // it keeps integers whole; the others would propose fractions
 };
 
 // Returns why this build cannot use the methods; empty if it can.

@@ -25,6 +25,12 @@ class ProblemView {
       upper_.push_back(variable.upper);
       start_.push_back(variable.start);
       is_logarithmic_.push_back(variable.scale == Scale::logarithmic ? 1 : 0);
+      types_.push_back(static_cast<std::uint8_t>(variable.type));
+      std::vector<const char*>& words = words_.emplace_back();
+      for (const std::string& choice : variable.choices) {
+        words.push_back(choice.c_str());
+      }
+      choices_.push_back(words.empty() ? nullptr : words.data());
     }
     for (const Quantity& objective : problem.objectives) {
       objectives_.push_back(objective.name.c_str());
@@ -51,7 +57,9 @@ class ProblemView {
            .constraint_units = constraint_units_.data(),
            .objective_weights =
                problem.objective_weights.empty() ? nullptr : problem.objective_weights.data(),
-           .has_residuals = problem.has_residuals ? std::size_t{1} : std::size_t{0}};
+           .has_residuals = problem.has_residuals ? std::size_t{1} : std::size_t{0},
+           .variable_types = types_.data(),
+           .variable_choices = choices_.data()};
   }
   ProblemView(const ProblemView&) = delete;
   ProblemView& operator=(const ProblemView&) = delete;
@@ -65,6 +73,9 @@ class ProblemView {
   std::vector<double> upper_;
   std::vector<double> start_;
   std::vector<std::uint8_t> is_logarithmic_;
+  std::vector<std::uint8_t> types_;
+  std::vector<std::vector<const char*>> words_;
+  std::vector<const char* const*> choices_;  // into words_
   std::vector<const char*> objectives_;
   std::vector<const char*> constraints_;
   std::vector<const char*> objective_units_;
@@ -212,6 +223,9 @@ void call_plugin(const struct armwright_plugin& plugin, const Options& options,
                 static_cast<int>(EvaluationStatus::timed_out) == ARMWRIGHT_TIMED_OUT &&
                 static_cast<int>(EvaluationStatus::failed) == ARMWRIGHT_FAILED &&
                 static_cast<int>(EvaluationStatus::abandoned) == ARMWRIGHT_ABANDONED);
+  static_assert(static_cast<int>(VariableType::real) == ARMWRIGHT_REAL_VARIABLE &&
+                static_cast<int>(VariableType::integer) == ARMWRIGHT_INTEGER_VARIABLE &&
+                static_cast<int>(VariableType::category) == ARMWRIGHT_CATEGORY_VARIABLE);
   const ProblemView problem(evaluator.problem());
   Call call(options, evaluator);
   const struct armwright_evaluator raw_evaluator = call.make_evaluator();

@@ -158,7 +158,7 @@ const struct armwright_plugin& open_plugin(const std::filesystem::path& file) {
 
 PluginDescription describe_plugin(const struct armwright_plugin& plugin,
                                   std::span<const std::string> own_options) {
-  constexpr std::uint32_t kKnown = (ARMWRIGHT_SAMPLING << 1) - 1;
+  constexpr std::uint32_t kKnown = (ARMWRIGHT_CATEGORIES << 1) - 1;
   PluginDescription taken;
   taken.name = take_name(plugin.name, "its name", "_-:ABCDEFGHIJKLMNOPQRSTUVWXYZ");
   taken.summary = take_text(plugin.summary, "its summary");

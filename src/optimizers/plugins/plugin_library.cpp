@@ -213,7 +213,9 @@ Capabilities make_capabilities(std::uint32_t bits) {
           .generations = has(ARMWRIGHT_GENERATIONS),
           .local = has(ARMWRIGHT_LOCAL),
           .sampling = has(ARMWRIGHT_SAMPLING),
-          .paced = has(ARMWRIGHT_PACED)};
+          .paced = has(ARMWRIGHT_PACED),
+          .integer = has(ARMWRIGHT_INTEGERS),
+          .categorical = has(ARMWRIGHT_CATEGORIES)};
 }
 
 }  // namespace

@@ -92,6 +92,12 @@ std::string make_minimize(const ProblemDescription& problem, std::uint64_t seed,
          {"upper", variable.upper},
          {"start", variable.start},
          {"scale", variable.scale == Scale::logarithmic ? "logarithmic" : "linear"}});
+    if (variable.type != VariableType::real) {
+      variables.back()["type"] = to_string(variable.type);
+    }
+    if (variable.type == VariableType::category) {
+      variables.back()["choices"] = variable.choices;
+    }
   }
   OrderedJson values = OrderedJson::object();
   for (const auto& [name, value] : options.values()) {

@@ -9,6 +9,7 @@
 #include "base/random.hpp"
 #include "base/text.hpp"
 #include "optimizers/interface/search_space.hpp"
+#include "optimizers/interface/treated_problem.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 
 namespace armwright {
@@ -73,7 +74,7 @@ class Multistart : public Optimizer {
 
   void minimize(Evaluator& evaluator, std::uint64_t seed) override {
     RandomStream random("optimizer/multistart", seed);
-    const SearchSpace space(evaluator.problem().variables);
+    const SearchSpace space(adapt_variables(evaluator.problem().variables, {}));
     const std::int64_t allowance = evaluations_per_start_ == 0 ? INT64_MAX : evaluations_per_start_;
     // Two consecutive starts without an evaluation: the inner optimizer cannot work on this
     // problem, and the loop would never end.
@@ -84,7 +85,8 @@ class Multistart : public Optimizer {
       if (!is_first) {
         const std::vector<double> start = draw_start(space, random);
         for (std::size_t i = 0; i < start.size(); ++i) {
-          problem.variables[i].start = start[i];
+          DecisionVariable& variable = problem.variables[i];
+          variable.start = settle_value(variable, start[i]);
         }
       }
       StartedElsewhere restarted(evaluator, std::move(problem), allowance);

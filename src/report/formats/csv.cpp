@@ -43,6 +43,9 @@ std::string make_header(const ProblemRuns& problem) {
   }
   append("metric.", problem.names.metrics);
   append("x.", problem.names.variables);
+  if (!problem.names.discrete.empty()) {
+    append("proposed.", problem.names.variables);
+  }
   return header + "\n";
 }
 
@@ -57,6 +60,9 @@ void write_evaluations(OutputFile& file, const ProblemRuns& problem, const RunTr
     append_numbers(row, evaluation.constraint_values, problem.constraints);
     append_numbers(row, evaluation.metrics, problem.names.metrics.size());
     append_numbers(row, evaluation.x, problem.names.variables.size());
+    if (!problem.names.discrete.empty()) {
+      append_numbers(row, evaluation.proposed, problem.names.variables.size());
+    }
     file.write(row + "\n");
   });
 }

@@ -21,7 +21,8 @@ namespace armwright {
 //   evaluations/PROBLEM.csv     one row per evaluation: problem, label, optimizer, replicate,
 //                               evaluation, simulated_cases, status, feasible, objective, then
 //                               objective.NAME, constraint.N, metric.NAME and x.NAME for each of
-//                               these; a field without a value is empty
+//                               these, and proposed.NAME if the problem has discrete variables; a
+//                               field without a value is empty
 //   designs/PROBLEM-LABEL-REPLICATE.toml    the winner of each run on an arm
 //   test-cases/PROBLEM.json     the test cases of the winners
 // The files of JSON: runs.json and the same test cases. A number without a value is null.

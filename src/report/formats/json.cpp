@@ -33,6 +33,9 @@ ordered_json to_json(const TracedEvaluation& evaluation) {
                     {"constraints", evaluation.constraint_values},
                     {"metrics", evaluation.metrics},
                     {"x", evaluation.x}};
+  if (!evaluation.proposed.empty()) {
+    j["proposed"] = evaluation.proposed;
+  }
   if (!evaluation.reason.empty()) {
     j["reason"] = sanitize(evaluation.reason);
   }
@@ -82,11 +85,15 @@ void write_run(OutputFile& file, const RunTrace& trace) {
 }
 
 void write_problem(OutputFile& file, const ProblemRuns& problem) {
-  std::string head = dump({{"name", problem.name},
-                           {"variables", problem.names.variables},
-                           {"objectives", problem.names.objectives},
-                           {"constraints", problem.constraints},
-                           {"metrics", problem.names.metrics}});
+  ordered_json names = {{"name", problem.name},
+                        {"variables", problem.names.variables},
+                        {"objectives", problem.names.objectives},
+                        {"constraints", problem.constraints},
+                        {"metrics", problem.names.metrics}};
+  if (!problem.names.discrete.empty()) {
+    names["discrete_variables"] = problem.names.discrete;
+  }
+  std::string head = dump(names);
   head.pop_back();
   file.write(head + ",\"runs\":[");
   const char* separator = "\n";

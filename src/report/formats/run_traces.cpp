@@ -146,6 +146,7 @@ TracedEvaluation make_traced(const EvaluationRecord& record, const std::vector<d
   traced.constraint_values = record.evaluation.constraint_values;
   traced.metrics = record.evaluation.metrics;
   traced.x = record.x;
+  traced.proposed = record.proposed;
   return traced;
 }
 
@@ -227,6 +228,9 @@ RunTrace read_trace(const RunEntry& run) {
   trace.tracking = result.tracking;
   trace.names.variables = result.variable_names;
   trace.names.metrics = result.metric_names;
+  for (const DecisionVariable& variable : result.discrete_variables) {
+    trace.names.discrete[variable.name] = variable.choices;
+  }
   for (const Quantity& objective : result.objectives) {
     trace.names.objectives.push_back(objective.name);
   }

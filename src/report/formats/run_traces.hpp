@@ -52,6 +52,7 @@ struct TracedEvaluation {
   std::vector<double> constraint_values;
   std::vector<double> metrics;
   std::vector<double> x;
+  std::vector<double> proposed;  // EvaluationRecord::proposed
 };
 
 // The evaluations of a run, in their order. Each visit reads them from the journal again, one at a
@@ -86,6 +87,8 @@ struct TraceNames {
   std::vector<std::string> variables;
   std::vector<std::string> objectives;
   std::vector<std::string> metrics;
+  // The discrete variables with the words of a category, or with none for an integer.
+  std::map<std::string, std::vector<std::string>> discrete = {};
   bool operator==(const TraceNames&) const = default;
 };
 

@@ -11,7 +11,7 @@ namespace armwright {
 
 MemoryEvaluator ContractTrial::run(const MemoryEvaluatorSettings& settings,
                                    std::uint64_t seed) const {
-  MemoryEvaluator evaluator(problem, settings);
+  MemoryEvaluator evaluator = make_evaluator(settings);
   row.make(options)->minimize(evaluator, seed);
   return evaluator;
 }
@@ -57,6 +57,7 @@ const std::vector<ContractCheck>& contract_checks() {
       {"Budget", "asks for no more than the budget allows", check_budget},
       {"ZeroBudget", "is content with a budget of nothing", check_zero_budget},
       {"Points", "asks for finite points, inside the bounds if it says so", check_points},
+      {"Types", "asks for whole numbers if it says so", check_types},
       {"Repeatable", "same seed, same evaluations", check_repeatable},
       {"Seed", "uses its seed if it says so, and only then", check_seed},
       {"Memory", "keeps nothing from one run for the next", check_memory_between_runs},

@@ -1,5 +1,5 @@
 // The checks of the contract suite, the problems on which they run optimizers, and what they share.
-// For use inside the suite only; its interface is contract.hpp.
+// For use inside the suite and by tests; its interface is contract.hpp.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,8 @@
 namespace armwright {
 
 // Returns the problems of the suite that suit the optimizer: the analytic functions, one with
-// logarithmic variables like those of robots (log_bowl), and one with two objectives (zdt1).
+// logarithmic variables like those of robots (log_bowl), one with two objectives (zdt1), and one
+// with variables of every type (mixed_bowl).
 std::vector<std::shared_ptr<const Problem>> make_contract_problems(const OptimizerRow& row);
 
 // The reference point of hypervolumes: at least as large as every objective of zdt1.
@@ -25,6 +26,11 @@ struct ContractTrial {
   const Options& options;
   const Problem& problem;
 
+  // Returns an evaluator that gives the optimizer the variables as it can treat them.
+  MemoryEvaluator make_evaluator(MemoryEvaluatorSettings settings) const {
+    settings.capabilities = row.capabilities;
+    return {problem, settings};
+  }
   // Runs a new optimizer once and returns its evaluator.
   MemoryEvaluator run(const MemoryEvaluatorSettings& settings, std::uint64_t seed = 1) const;
 };
@@ -44,6 +50,7 @@ std::string describe_difference(const std::vector<MemoryEvaluator::Entry>& a,
 // The requests of an undisturbed optimizer (contract_requests.cpp).
 ContractFinding check_budget(const OptimizerRow& row, const Options& options);
 ContractFinding check_zero_budget(const OptimizerRow& row, const Options& options);
+ContractFinding check_types(const OptimizerRow& row, const Options& options);
 ContractFinding check_points(const OptimizerRow& row, const Options& options);
 ContractFinding check_repeatable(const OptimizerRow& row, const Options& options);
 ContractFinding check_seed(const OptimizerRow& row, const Options& options);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <memory>
 #include <optional>
 
 #include "base/temporary_folder.hpp"
@@ -43,7 +44,8 @@ ContractFinding check_failures(const OptimizerRow& row, const Options& options) 
 ContractFinding check_stop(const OptimizerRow& row, const Options& options) {
   return check_on_all(row, options, [&](const ContractTrial& trial) -> std::string {
     for (const std::int64_t stop_after : {1, 35, 50}) {
-      MemoryEvaluator evaluator(trial.problem, {.budget = INT64_MAX, .stop_after = stop_after});
+      MemoryEvaluator evaluator =
+          trial.make_evaluator({.budget = INT64_MAX, .stop_after = stop_after});
       const auto optimizer = row.make(options);
       optimizer->minimize(evaluator, 1);
       const auto now = std::chrono::steady_clock::now();
@@ -68,22 +70,25 @@ ContractFinding check_exceptions(const OptimizerRow& row, const Options& options
       if (std::ssize(trial.run({.budget = 200}).trace()) < throw_at) {
         continue;  // the optimizer ends by itself before that evaluation
       }
-      MemoryEvaluator broken(trial.problem, {.budget = 200, .throw_at = throw_at});
+      MemoryEvaluator broken = trial.make_evaluator({.budget = 200, .throw_at = throw_at});
       try {
         optimizer->minimize(broken, 1);
         return fmt::format("an exception of evaluation {} is swallowed", throw_at);
       } catch (const BrokenEvaluator&) {
       }
     }
-    MemoryEvaluator sound(trial.problem, {.budget = 200});
+    MemoryEvaluator sound = trial.make_evaluator({.budget = 200});
     optimizer->minimize(sound, 1);
     return describe_difference(sound.trace(), trial.run({.budget = 200}).trace());
   });
 }
 
-ContractFinding check_resume(const OptimizerRow& row, const Options& options) {
+namespace {
+
+ContractFinding check_resume_on(const std::shared_ptr<const Problem>& problem,
+                                const OptimizerRow& row, const Options& options) {
   RunPlan plan;
-  plan.problem.problem = make_contract_problems(row).at(0);
+  plan.problem.problem = problem;
   plan.problem.name = plan.problem.problem->description().name;
   plan.problem.sets.validation_cases = 1;
   plan.problem.sets.test_cases = 1;
@@ -118,6 +123,19 @@ ContractFinding check_resume(const OptimizerRow& row, const Options& options) {
   }
   if (to_json(*whole) != to_json(*resumed)) {
     return make_broken("a run that was stopped and resumed ends with another result");
+  }
+  return {};
+}
+
+}  // namespace
+
+ContractFinding check_resume(const OptimizerRow& row, const Options& options) {
+  const auto problems = make_contract_problems(row);
+  for (const auto& problem : {problems.front(), problems.back()}) {  // the last has every type
+    const ContractFinding finding = check_resume_on(problem, row, options);
+    if (finding.outcome == ContractOutcome::broken) {
+      return make_broken(fmt::format("on {}: {}", problem->description().name, finding.detail));
+    }
   }
   return {};
 }

@@ -66,6 +66,27 @@ ContractFinding check_points(const OptimizerRow& row, const Options& options) {
   });
 }
 
+ContractFinding check_types(const OptimizerRow& row, const Options& options) {
+  if (!row.capabilities.integer && !row.capabilities.categorical) {
+    return make_exempt("it declares neither 'integer' nor 'categorical': its points are rounded");
+  }
+  return check_on_all(row, options, [&](const ContractTrial& trial) -> std::string {
+    const MemoryEvaluator evaluator = trial.run({.budget = 600});
+    const std::vector<DecisionVariable>& variables = evaluator.problem().variables;
+    for (std::size_t i = 0; i < evaluator.trace().size(); ++i) {
+      const std::vector<double>& asked = evaluator.trace()[i].asked;
+      for (std::size_t k = 0; k < asked.size(); ++k) {
+        if (variables[k].type != VariableType::real && asked[k] != std::round(asked[k])) {
+          return fmt::format(
+              "evaluation {} asks for {} = {}, and it declares '{}'", i, variables[k].name,
+              asked[k], variables[k].type == VariableType::integer ? "integer" : "categorical");
+        }
+      }
+    }
+    return "";
+  });
+}
+
 ContractFinding check_batches(const OptimizerRow& row, const Options& options) {
   return check_on_all(row, options, [&](const ContractTrial& trial) -> std::string {
     const MemoryEvaluator evaluator = trial.run({.budget = 200});
@@ -112,8 +133,8 @@ ContractFinding check_seed(const OptimizerRow& row, const Options& options) {
 ContractFinding check_memory_between_runs(const OptimizerRow& row, const Options& options) {
   return check_on_all(row, options, [&](const ContractTrial& trial) {
     const auto optimizer = row.make(options);
-    MemoryEvaluator first(trial.problem, {.budget = 200});
-    MemoryEvaluator second(trial.problem, {.budget = 200});
+    MemoryEvaluator first = trial.make_evaluator({.budget = 200});
+    MemoryEvaluator second = trial.make_evaluator({.budget = 200});
     optimizer->minimize(first, 3);
     optimizer->minimize(second, 3);
     return describe_difference(first.trace(), second.trace());

@@ -1,8 +1,8 @@
 // An Evaluator without a journal, for tests of optimizers and for the contract suite
-// (contract.hpp). It keeps the budget exactly, cuts the last batch, clips points to the bounds, and
-// records a trace of all requests. On request, evaluations fail or throw, or the run is stopped. It
-// is as strict as the interface allows: a failed evaluation has the penalty as objectives and no
-// constraint values.
+// (contract.hpp). It keeps the budget exactly, cuts the last batch, clips points to the bounds,
+// rounds discrete variables, and records a trace of all requests. On request, evaluations fail or
+// throw, or the run is stopped. It is as strict as the interface allows: a failed evaluation has
+// the penalty as objectives and no constraint values.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "optimizers/interface/optimizer.hpp"
+#include "optimizers/interface/treated_problem.hpp"
 
 namespace armwright {
 
@@ -29,6 +29,8 @@ struct MemoryEvaluatorSettings {
   std::int64_t fail_every = 0;  // the evaluations k, 2k, 3k, ... (from 1) fail; 0: none
   std::int64_t throw_at = 0;    // the evaluation with this number (from 1) throws; 0: none
   std::int64_t stop_after = INT64_MAX;  // stops the run after this many evaluations
+  // Of the optimizer. By default, discrete variables stay as they are.
+  Capabilities capabilities = {.integer = true, .categorical = true};
 };
 
 // A MemoryEvaluator evaluates points of one problem, which must outlive it.
@@ -51,9 +53,11 @@ class MemoryEvaluator : public Evaluator {
   };
 
   MemoryEvaluator(const Problem& problem, MemoryEvaluatorSettings settings)
-      : problem_(problem), settings_(settings) {}
+      : problem_(problem),
+        settings_(settings),
+        treated_(problem.description(), settings.capabilities) {}
 
-  const ProblemDescription& problem() const override { return problem_.description(); }
+  const ProblemDescription& problem() const override { return treated_.description(); }
 
   std::vector<Score> evaluate(std::span<const std::vector<double>> points) override {
     return evaluate(points, false);
@@ -127,15 +131,13 @@ class MemoryEvaluator : public Evaluator {
     if (number == settings_.throw_at) {
       throw BrokenEvaluator();
     }
+    TreatedProblem::Point point = treated_.settle(asked);
     Entry entry{.asked = asked,
-                .evaluated = asked,
+                .evaluated = std::move(point.x),
                 .score = {},
                 .generation = generations_,
                 .with_jacobian = with_jacobian};
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-      entry.evaluated[i] = std::clamp(asked[i], variables[i].lower, variables[i].upper);
-    }
-    entry.score.clipped = entry.evaluated != asked;
+    entry.score.clipped = point.clipped;
     if (settings_.fail_every > 0 && number % settings_.fail_every == 0) {
       entry.score.objectives = problem_.penalty_objectives();
       entry.score.status = EvaluationStatus::diverged;
@@ -158,6 +160,7 @@ class MemoryEvaluator : public Evaluator {
 
   const Problem& problem_;
   MemoryEvaluatorSettings settings_;
+  TreatedProblem treated_;
   std::vector<Entry> trace_;
   std::int64_t charged_ = 0;
   bool is_spent_ = false;  // the rest of the budget is too small for the last request

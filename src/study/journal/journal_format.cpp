@@ -22,12 +22,26 @@ constexpr std::uint8_t kEvaluationType = 1;
 constexpr std::uint8_t kEndType = 2;
 constexpr std::uint8_t kJacobianType = 3;
 constexpr std::uint8_t kLateType = 4;
+constexpr std::uint8_t kProposalType = 5;
+constexpr std::uint8_t kJacobianProposalType = 6;
 constexpr unsigned kStatuses = 1 + static_cast<unsigned>(EvaluationStatus::abandoned);
+
+bool has_jacobian(std::uint8_t type) {
+  return type == kJacobianType || type == kJacobianProposalType;
+}
+
+bool has_proposal(std::uint8_t type) {
+  return type == kProposalType || type == kJacobianProposalType;
+}
+
+bool is_evaluation(std::uint8_t type) {
+  return type == kEvaluationType || has_jacobian(type) || has_proposal(type);
+}
 
 // visit_fields lists the fields once, and four visitors measure, write, read and check them.
 
 template <class Fields, class Record>
-void visit_evaluation(Fields& fields, Record& record) {
+void visit_evaluation(std::uint8_t type, Fields& fields, Record& record) {
   auto& evaluation = record.evaluation;
   fields.choice(record.clipped, 2);
   fields.choice(record.cases.role, 3);
@@ -44,13 +58,16 @@ void visit_evaluation(Fields& fields, Record& record) {
   fields.list(evaluation.case_errors);
   fields.list(evaluation.metrics);
   fields.list(evaluation.residuals);
-  if (record.with_jacobian) {
+  if (has_jacobian(type)) {
     fields.list(evaluation.jacobian);
+  }
+  if (has_proposal(type)) {
+    fields.list(record.proposed);
   }
 }
 
 template <class Fields, class Record>
-void visit_fields(Fields& fields, Record& record) {
+void visit_fields(std::uint8_t type, Fields& fields, Record& record) {
   if constexpr (std::is_same_v<std::remove_const_t<Record>, EndRecord>) {
     fields.number(record.evaluations);
     fields.list(record.reason);
@@ -58,7 +75,7 @@ void visit_fields(Fields& fields, Record& record) {
     fields.number(record.count);
     fields.list(record.x);
   } else {
-    visit_evaluation(fields, record);
+    visit_evaluation(type, fields, record);
   }
 }
 
@@ -168,7 +185,7 @@ struct Check {
 template <class Record>
 void encode_as(std::uint8_t type, const Record& record, std::string& buffer) {
   Measure measure;
-  visit_fields(measure, record);
+  visit_fields(type, measure, record);
   if (measure.bytes > kMaxPayloadBytes) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("a record of {} bytes is too large for the journal; at most {} bytes "
@@ -180,31 +197,30 @@ void encode_as(std::uint8_t type, const Record& record, std::string& buffer) {
   char* const payload = buffer.data() + begin + kFrameBytes;
   Write write{payload};
   write.number(type);
-  visit_fields(write, record);
+  visit_fields(type, write, record);
   Write frame{buffer.data() + begin};
   frame.number(static_cast<std::uint32_t>(measure.bytes));
   frame.number(calc_crc32({payload, measure.bytes}));
 }
 
-// Calls `on_blank` with an empty record of the payload's type.
+// Calls `on_blank` with the payload's type and an empty record of that type.
 template <class OnBlank>
 auto with_blank_record(std::string_view payload, OnBlank on_blank)
-    -> decltype(on_blank(EvaluationRecord())) {
+    -> decltype(on_blank(kEvaluationType, EvaluationRecord())) {
   if (payload.empty()) {
     return {};
   }
-  switch (static_cast<std::uint8_t>(payload.front())) {
-    case kEvaluationType:
-      return on_blank(EvaluationRecord());
+  const auto type = static_cast<std::uint8_t>(payload.front());
+  if (is_evaluation(type)) {
+    EvaluationRecord record;
+    record.with_jacobian = has_jacobian(type);
+    return on_blank(type, std::move(record));
+  }
+  switch (type) {
     case kEndType:
-      return on_blank(EndRecord());
+      return on_blank(type, EndRecord());
     case kLateType:
-      return on_blank(LateRecommendations());
-    case kJacobianType: {
-      EvaluationRecord record;
-      record.with_jacobian = true;
-      return on_blank(std::move(record));
-    }
+      return on_blank(type, LateRecommendations());
     default:
       return {};
   }
@@ -213,7 +229,10 @@ auto with_blank_record(std::string_view payload, OnBlank on_blank)
 }  // namespace
 
 void encode(const EvaluationRecord& record, std::string& buffer) {
-  encode_as(record.with_jacobian ? kJacobianType : kEvaluationType, record, buffer);
+  const bool is_proposed = !record.proposed.empty();
+  const std::uint8_t plain = is_proposed ? kProposalType : kEvaluationType;
+  const std::uint8_t differentiated = is_proposed ? kJacobianProposalType : kJacobianType;
+  encode_as(record.with_jacobian ? differentiated : plain, record, buffer);
 }
 
 void encode(const LateRecommendations& record, std::string& buffer) {
@@ -249,7 +268,7 @@ bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes) {
   Read read{probe};
   std::uint8_t type = 0;
   read.number(type);
-  if (type == kEvaluationType || type == kJacobianType) {
+  if (is_evaluation(type)) {
     EvaluationRecord record;
     read.choice(record.clipped, 2);
     read.choice(record.cases.role, 3);
@@ -267,17 +286,17 @@ bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes) {
 }
 
 bool is_payload(std::string_view bytes) {
-  return with_blank_record(bytes, [&](const auto& record) {
+  return with_blank_record(bytes, [&](std::uint8_t type, const auto& record) {
     Check check{{bytes.substr(1)}};
-    visit_fields(check, record);
+    visit_fields(type, check, record);
     return check.read.good && check.read.rest.empty();
   });
 }
 
 std::optional<Record> decode_payload(std::string_view payload) {
-  return with_blank_record(payload, [&](auto record) -> std::optional<Record> {
+  return with_blank_record(payload, [&](std::uint8_t type, auto record) -> std::optional<Record> {
     Read read{payload.substr(1)};
-    visit_fields(read, record);
+    visit_fields(type, read, record);
     if (!read.good || !read.rest.empty()) {
       return std::nullopt;
     }

@@ -4,12 +4,15 @@
 //   file       = "AWJRNL01" record*
 //   record     = u32 payload length | u32 CRC-32 of the payload | payload
 //   payload    = evaluation | evaluation with Jacobian | late recommendations | end
+//                | evaluation with proposal | evaluation with Jacobian and proposal
 //   evaluation = u8 1 | u8 clipped | u8 role | u8 status | i32 failed_cases | u64 index
 //                | u64 generation
 //                | text set | list numbers (u64) | list x | text reason
 //                | list objectives | list constraint_values | list case_errors | list metrics
 //                | list residuals (empty unless the optimizer uses them)
 //   evaluation with Jacobian = u8 3 | as above | list jacobian (one row per residual, row by row)
+//   evaluation with proposal = u8 5 | as evaluation | list proposed (as the optimizer asked)
+//   evaluation with Jacobian and proposal = u8 6 | as evaluation with Jacobian | list proposed
 //   late recommendations = u8 4 | u64 count | list x (one vector after the other)
 //   end        = u8 2 | u64 evaluations | text reason
 //   text       = u32 length | bytes          list = u32 count | 8 bytes each

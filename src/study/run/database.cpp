@@ -25,6 +25,10 @@ constexpr const char* kSchema = R"(
   CREATE TABLE case_error(role TEXT, number INTEGER, case_number INTEGER, error REAL,
                           PRIMARY KEY(role, number, case_number)) WITHOUT ROWID;
 )";
+constexpr const char* kDiscreteSchema = R"(
+  CREATE TABLE discrete_variable(position INTEGER PRIMARY KEY, type TEXT, choices TEXT);
+  CREATE TABLE proposal(number INTEGER PRIMARY KEY, x TEXT);
+)";
 
 // An existing file that SQLite fills.
 class Database {
@@ -127,6 +131,27 @@ void insert_records(Database& database, const ProblemDescription& problem, const
   }
 }
 
+void insert_discrete(Database& database, const ProblemDescription& problem,
+                     const RecordedEvaluations& training) {
+  database.execute(kDiscreteSchema);
+  Insert discrete(database, "INSERT INTO discrete_variable VALUES (?,?,?)");
+  for (std::size_t i = 0; i < problem.variables.size(); ++i) {
+    const DecisionVariable& variable = problem.variables[i];
+    if (variable.type != VariableType::real) {
+      discrete << std::uint64_t{i} << std::string(to_string(variable.type))
+               << nlohmann::json(variable.choices).dump();
+      discrete.run();
+    }
+  }
+  Insert proposal(database, "INSERT INTO proposal VALUES (?,?)");
+  for (const EvaluationRecord& record : training) {
+    if (!record.proposed.empty()) {
+      proposal << record.index << nlohmann::json(record.proposed).dump();
+      proposal.run();
+    }
+  }
+}
+
 void fill_database(Database& database, const ProblemDescription& problem,
                    const JournalContent& journal) {
   // The whole file is synced at the end; no other process uses it before that.
@@ -146,6 +171,9 @@ void fill_database(Database& database, const ProblemDescription& problem,
     }
     insert_records(database, problem, journal.training);
     insert_records(database, problem, journal.judgements);
+    if (has_discrete(problem.variables)) {
+      insert_discrete(database, problem, journal.training);
+    }
   }
   database.execute("COMMIT");
   database.close();

@@ -92,8 +92,11 @@ std::string make_front_csv(const RunResult& result) {
     for (const double objective : row->validation.objectives) {
       csv += "," + format_exact(objective);
     }
-    for (const double value : row->candidate.x) {
-      csv += "," + format_exact(value);
+    for (std::size_t i = 0; i < row->candidate.x.size(); ++i) {
+      const double value = row->candidate.x[i];
+      const DecisionVariable* const discrete = find_discrete(result, i);
+      const bool is_word = discrete != nullptr && discrete->type == VariableType::category;
+      csv += "," + (is_word ? quote_csv(format_value(*discrete, value)) : format_exact(value));
     }
     csv += "\n";
   }

@@ -40,6 +40,12 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
 //     role: training, validation or test; objective: of several, the weighted sum;
 //     x and metrics: JSON arrays in the order of the tables variable and metric
 //   case_error(role, number, case_number, error)     error is NULL if the simulation yielded none
+// and, if the problem has discrete variables, also these:
+//   discrete_variable(position, type, choices)
+//     type: integer or category; choices: JSON array of the words of a category, whose number in x is
+//     the place of the word, from 0
+//   proposal(number, x)
+//     the training evaluations whose decision vector was rounded, and what the optimizer asked for
 // Replaces the file `name` in one step. Throws Error{io} with SQLite's reason if it cannot be
 // written.
 void write_database(const Folder& folder, const std::string& name,

@@ -39,6 +39,9 @@ RunResult make_result(const RunPlan& plan) {
   result.seed = plan.seed;
   for (const DecisionVariable& variable : description.variables) {
     result.variable_names.push_back(variable.name);
+    if (variable.type != VariableType::real) {
+      result.discrete_variables.push_back(variable);
+    }
   }
   for (const Quantity& metric : description.metrics) {
     result.metric_names.push_back(metric.name);

@@ -22,6 +22,11 @@ namespace {
 // The most decision vectors that count after the end of the budget. Later ones are ignored.
 constexpr std::size_t kMostLate = 100;
 
+// Returns the point as the optimizer asked for it, within its bounds.
+const std::vector<double>& get_asked(const EvaluationRecord& record) {
+  return record.proposed.empty() ? record.x : record.proposed;
+}
+
 }  // namespace
 
 // Candidates that the optimizer asks for together, and what is known of them.
@@ -40,6 +45,7 @@ RunEvaluator::RunEvaluator(const RunPlan& plan, CaseExecutor& executor, StopSign
       stop_(stop),
       journal_(journal),
       observer_(observer),
+      treated_(plan.problem.problem->description(), plan.optimizer.capabilities),
       recorded_(recorded.training),
       journal_ended_(recorded.ended),
       recorded_late_(recorded.late),
@@ -52,10 +58,6 @@ RunEvaluator::RunEvaluator(const RunPlan& plan, CaseExecutor& executor, StopSign
     breeder_.emplace(block_.set, plan.schedule.cases);
     block_.numbers = breeder_->genomes();
   }
-}
-
-const ProblemDescription& RunEvaluator::problem() const {
-  return plan_.problem.problem->description();
 }
 
 bool RunEvaluator::stopped() const {
@@ -143,17 +145,10 @@ EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
   EvaluationRecord request;
   request.generation = counts_.generations;
   request.cases = block_;
-  request.x.resize(x.size());
-  bool clipped = false;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    // For NaN there is no nearest point inside the bounds, so the start value replaces it.
-    const double inside = std::isnan(x[i])
-                              ? variables[i].start
-                              : std::clamp(x[i], variables[i].lower, variables[i].upper);
-    clipped |= !(inside == x[i]);
-    request.x[i] = inside;
-  }
-  request.clipped = clipped;
+  TreatedProblem::Point point = treated_.settle(x);
+  request.x = std::move(point.x);
+  request.proposed = std::move(point.proposed);
+  request.clipped = point.clipped;
   return request;
 }
 
@@ -175,12 +170,15 @@ void RunEvaluator::check_replay(const EvaluationRecord& request, const Evaluatio
   if (recorded.cases.set != request.cases.set || !is_first ||
       (had.size() < all.size() && !may_be_part)) {
     difference = "its training cases differ";
-  } else if (!same_bits(recorded.x, request.x)) {
+  } else if (!same_bits(recorded.x, request.x) ||
+             !same_bits(get_asked(recorded), get_asked(request))) {
     difference = "the decision vector differs";
-    for (std::size_t i = 0; i < std::min(request.x.size(), recorded.x.size()); ++i) {
-      if (!same_bits({&request.x[i], 1}, {&recorded.x[i], 1})) {
+    const std::vector<double>& was = get_asked(recorded);
+    const std::vector<double>& now = get_asked(request);
+    for (std::size_t i = 0; i < std::min(now.size(), was.size()); ++i) {
+      if (!same_bits({&now[i], 1}, {&was[i], 1})) {
         difference = fmt::format("{} was {} and is now {}", problem().variables[i].name,
-                                 format_exact(recorded.x[i]), format_exact(request.x[i]));
+                                 format_exact(was[i]), format_exact(now[i]));
         break;
       }
     }

@@ -1,5 +1,6 @@
 // The Evaluator of a run. It charges the budget exactly: a batch is cut where the budget ends, to
-// whole candidates. It clips points to the bounds and counts them, chooses the training cases,
+// whole candidates. It clips points to the bounds and counts them, rounds discrete variables
+// (treated_problem.hpp), chooses the training cases,
 // races candidates (racing.hpp) and breeds cases (case_breeder.hpp). It answers from the journal
 // what a former process has evaluated, appends all other evaluations to the journal as they finish,
 // and keeps the designs worth judging (candidate_pool.hpp).
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "optimizers/interface/evaluator.hpp"
+#include "optimizers/interface/treated_problem.hpp"
 #include "study/executor/case_executor.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/candidate_pool.hpp"
@@ -27,7 +29,8 @@ class RunEvaluator final : public Evaluator {
   RunEvaluator(const RunPlan& plan, CaseExecutor& executor, StopSignal& stop, Journal& journal,
                const JournalContent& recorded, RunObserver& observer);
 
-  const ProblemDescription& problem() const override;
+  // Returns the problem as the optimizer can treat it.
+  const ProblemDescription& problem() const override { return treated_.description(); }
   // Besides what the Evaluator declares, throws Error{bad_data} if the journal holds another
   // evaluation than the one asked for, and Error{io} if the journal cannot be written.
   std::vector<Score> evaluate(std::span<const std::vector<double>> points) override {
@@ -92,6 +95,7 @@ class RunEvaluator final : public Evaluator {
   StopSignal& stop_;
   Journal& journal_;
   RunObserver& observer_;
+  const TreatedProblem treated_;
   const RecordedEvaluations recorded_;
   bool budget_spent_ = false;
   bool stopped_ = false;

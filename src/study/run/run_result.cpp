@@ -58,6 +58,35 @@ RequiredMetric requirement_from_json(const RunResult& result, const json& j) {
   return requirement;
 }
 
+json discrete_to_json(const DecisionVariable& variable) {
+  json j = {{"name", variable.name}, {"type", to_string(variable.type)}};
+  if (variable.type == VariableType::category) {
+    j["choices"] = variable.choices;
+  }
+  return j;
+}
+
+DecisionVariable discrete_from_json(const RunResult& result, const json& j) {
+  DecisionVariable variable{.name = j.at("name"), .unit = {}};
+  if (std::ranges::count(result.variable_names, variable.name) == 0) {
+    throw std::runtime_error("a discrete variable is none of its variables");
+  }
+  const std::string type = j.at("type");
+  if (type == to_string(VariableType::category)) {
+    variable.type = VariableType::category;
+    variable.choices = j.at("choices").get<std::vector<std::string>>();
+    if (variable.choices.empty()) {
+      throw std::runtime_error("a category has no words");
+    }
+    variable.upper = static_cast<double>(variable.choices.size() - 1);
+  } else if (type == to_string(VariableType::integer)) {
+    variable.type = VariableType::integer;
+  } else {
+    throw std::runtime_error("a discrete variable has an unknown type");
+  }
+  return variable;
+}
+
 json evaluation_to_json(const Evaluation& evaluation) {
   return {{"feasible", is_proven_feasible(evaluation)},
           {"status", to_string(evaluation.status)},
@@ -177,6 +206,12 @@ std::string shorten_optimizer(const std::string& optimizer) {
              : optimizer.substr(0, begin) + optimizer.substr(slash + 1);
 }
 
+const DecisionVariable* find_discrete(const RunResult& result, std::size_t variable) {
+  const auto found = std::ranges::find(result.discrete_variables,
+                                       result.variable_names.at(variable), &DecisionVariable::name);
+  return found == result.discrete_variables.end() ? nullptr : &*found;
+}
+
 double get_failure_error(const RunResult& result) {
   return result.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
 }
@@ -253,6 +288,9 @@ std::string to_json(const RunResult& result) {
        result.requirements) {  // the key is left out if there are none
     j["requirements"].push_back(requirement_to_json(result, requirement));
   }
+  for (const DecisionVariable& variable : result.discrete_variables) {  // left out if all are real
+    j["discrete_variables"].push_back(discrete_to_json(variable));
+  }
   if (result.winner) {
     j["winner"] = {{"candidate", *result.winner},
                    {"test", evaluation_to_json(result.test)},
@@ -288,6 +326,9 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     result.counts.feasible = whole_from_json(counts.at("feasible"));
     result.counts.generations = whole_from_json(counts.at("generations"));
     result.variable_names = j.at("variables").get<std::vector<std::string>>();
+    for (const json& variable : j.value("discrete_variables", json::array())) {
+      result.discrete_variables.push_back(discrete_from_json(result, variable));
+    }
     result.metric_names = j.at("metrics").get<std::vector<std::string>>();
     for (const json& objective : j.at("objectives")) {
       result.objectives.push_back(quantity_from_json(objective));

@@ -51,6 +51,9 @@ struct RunResult {
   Evaluation test;                    // the winner's on the test set
   ErrorSummary test_summary;
   std::vector<std::string> variable_names;
+  // The variables that are not real, with name, type and, for categories, words. Their bounds are
+  // not recorded: those of a category follow from its words.
+  std::vector<DecisionVariable> discrete_variables;
   std::vector<std::string> metric_names;
   std::vector<Quantity> objectives;
   std::vector<double> objective_weights;  // as in ProblemDescription
@@ -67,6 +70,10 @@ struct RunResult {
 
 // Returns a recorded optimizer's name for texts and titles: of a plugin's path only the file's name.
 std::string shorten_optimizer(const std::string& optimizer);
+
+// Returns the discrete variable with this index in variable_names, for format_value(); null if that
+// variable is real. The pointer is valid as long as the result.
+const DecisionVariable* find_discrete(const RunResult& result, std::size_t variable);
 
 // Returns the error above which a test case has failed: kFailureError_m for an arm, infinity for a
 // function.

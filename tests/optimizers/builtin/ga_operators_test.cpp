@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "optimizers/builtin/ga.hpp"
 #include "optimizers/kolmogorov_smirnov.hpp"
@@ -34,6 +36,20 @@ DecisionVariable logarithmic(double lower, double start, double upper) {
 
 DecisionVariable linear(double lower, double upper) {
   return {"v", "", lower, upper, lower, Scale::linear};
+}
+
+DecisionVariable whole(double lower, double upper, Scale scale = Scale::linear) {
+  return {"v", "", lower, upper, lower, scale, VariableType::integer};
+}
+
+DecisionVariable words(std::vector<std::string> choices) {
+  const double last = static_cast<double>(choices.size()) - 1;
+  return {"v", "", 0, last, 0, Scale::linear, VariableType::category, std::move(choices)};
+}
+
+Genome cross_real(const Genome& first, const Genome& second, const CrossoverSettings& settings,
+                  RandomStream& random) {
+  return cross(first, second, std::vector<DecisionVariable>(first.size()), settings, random);
 }
 
 TEST(GaFitness, RankingKeepsTheOrderOfEquals) {
@@ -127,7 +143,7 @@ TEST(GaCrossover, HandComputedChild) {
       }
     }
     RandomStream random("test/ga/child", index);
-    EXPECT_EQ(cross(a, b, {.probability = 0.75, .extent = 0.25}, random), expected);
+    EXPECT_EQ(cross_real(a, b, {.probability = 0.75, .extent = 0.25}, random), expected);
   }
 }
 
@@ -144,7 +160,7 @@ TEST(GaCrossover, SharesAndSigmaAreAsDeclared) {
   int a_was_base = 0;
   std::vector<double> shares;  // sigma as a share of the extent
   for (int child_number = 0; child_number < kChildren; ++child_number) {
-    const Genome child = cross(a, b, {.probability = 0.75, .extent = 0.25}, random);
+    const Genome child = cross_real(a, b, {.probability = 0.75, .extent = 0.25}, random);
     // Crossed or not, with sigma in [0, 0.25) every gene lies nearer to the base's.
     const bool a_is_base = std::abs(child[0] - a[0]) < std::abs(child[0] - b[0]);
     a_was_base += a_is_base ? 1 : 0;
@@ -173,7 +189,7 @@ TEST(GaCrossover, GenesAreCrossedIndependentlyOfEachOther) {
   constexpr int kChildren = 20000;
   int both = 0;
   for (int child_number = 0; child_number < kChildren; ++child_number) {
-    const Genome child = cross(a, b, {.probability = 0.75, .extent = 0.25}, random);
+    const Genome child = cross_real(a, b, {.probability = 0.75, .extent = 0.25}, random);
     const auto is_copied = [](double gene) { return gene == 1 || gene == 2; };
     both += !is_copied(child[0]) && !is_copied(child[1]) ? 1 : 0;
   }
@@ -235,6 +251,66 @@ TEST(GaMutation, LinearVariablesMoveUniformly) {
     }
   }
   EXPECT_LT(calc_kolmogorov_smirnov(positions), kKolmogorovSmirnovBound);
+}
+
+// With sigma in [0, 0.25) the gene lies in [3.25, 4) of 2 and 5 as the base 2 decides, or in
+// [3.5, 4.25) as the base 5 does: it is 3 or 4.
+TEST(GaCrossover, AnIntegerIsRoundedBetweenItsParents) {
+  const std::vector<DecisionVariable> variables = {whole(-9, 9)};
+  RandomStream random("test/ga/integer");
+  std::map<double, int> counts;
+  for (int child = 0; child < 1000; ++child) {
+    ++counts[cross({2}, {5}, variables, {.probability = 1, .extent = 0.25}, random)[0]];
+  }
+  EXPECT_THAT(counts, ElementsAre(testing::Key(3), testing::Key(4)));
+}
+
+TEST(GaCrossover, ACategoryIsTheWordOfEitherParentWithTheSameProbability) {
+  const std::vector<DecisionVariable> variables = {words({"a", "b", "c", "d"})};
+  RandomStream random("test/ga/category");
+  constexpr int kChildren = 20000;
+  int first = 0;
+  for (int child = 0; child < kChildren; ++child) {
+    const double gene = cross({0}, {3}, variables, {.probability = 1, .extent = 0.25}, random)[0];
+    ASSERT_TRUE(gene == 0 || gene == 3) << gene;
+    first += gene == 0 ? 1 : 0;
+  }
+  EXPECT_NEAR(first / double{kChildren}, 0.5, calc_share_bound(0.5, kChildren));
+}
+
+TEST(GaMutation, AnIntegerMovesByAtLeastOneAndStaysWholeAndInside) {
+  // A factor of 2 moves a gene of 0..3 by 0.23 at most, so rounding alone would freeze it.
+  EXPECT_EQ(calc_mutated_gene(whole(0, 3), 1, 2, 0.01), 2);
+  EXPECT_EQ(calc_mutated_gene(whole(0, 3), 1, 2, -0.01), 0);
+  EXPECT_EQ(calc_mutated_gene(whole(0, 3), 3, 2, 0.9), 2);  // at a bound it turns round
+  EXPECT_EQ(calc_mutated_gene(whole(0, 3), 0, 2, -0.9), 1);
+  EXPECT_EQ(calc_mutated_gene(whole(2, 2), 2, 2, 0.5), 2);  // there is no other value
+  // A factor of 100 moves by up to half the box: 0.5 * 50 = 25.
+  EXPECT_EQ(calc_mutated_gene(whole(0, 100), 40, 100, 0.5), 65);
+  EXPECT_EQ(calc_mutated_gene(whole(0, 100), 90, 100, 0.5), 100);
+}
+
+TEST(GaMutation, ALogarithmicIntegerIsMultipliedAndRounded) {
+  EXPECT_EQ(calc_mutated_gene(whole(1, 1000, Scale::logarithmic), 100, 2, 1), 200);
+  EXPECT_EQ(calc_mutated_gene(whole(1, 1000, Scale::logarithmic), 3, 1.1, 0.5), 4);
+  EXPECT_EQ(calc_mutated_gene(whole(1, 1000, Scale::logarithmic), 1, 1.1, -0.5), 2);
+  EXPECT_EQ(calc_mutated_gene(whole(-1000, -1, Scale::logarithmic), -3, 1.1, 0.5), -4);
+  EXPECT_EQ(calc_mutated_gene(whole(-1000, -1, Scale::logarithmic), -3, 1.1, -0.5), -2);
+}
+
+TEST(GaMutation, ACategoryBecomesEachOtherWordWithTheSameProbability) {
+  const DecisionVariable variable = words({"a", "b", "c", "d"});
+  RandomStream random("test/ga/words");
+  constexpr int kDraws = 30000;
+  std::map<double, int> counts;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    ++counts[calc_mutated_gene(variable, 1, 2, random.uniform(-1, 1))];
+  }
+  ASSERT_THAT(counts, ElementsAre(testing::Key(0), testing::Key(2), testing::Key(3)));
+  for (const auto& [word, count] : counts) {
+    EXPECT_NEAR(count / double{kDraws}, 1.0 / 3, calc_share_bound(1.0 / 3, kDraws)) << word;
+  }
+  EXPECT_EQ(calc_mutated_gene(words({"only"}), 0, 2, 0.3), 0);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "optimizers/table/optimizer_table.hpp"
 #include "optimizers/test_problems.hpp"
 #include "problems/analytic/analytic.hpp"
-#include "study/contract/memory_evaluator.hpp"
+#include "study/contract/contract_checks.hpp"
 
 namespace armwright {
 namespace {
@@ -247,6 +247,23 @@ TEST(Ga, FindsTheFeasibleOptimum) {
   }
   std::ranges::sort(best);
   EXPECT_LT(best[2], -43.5);
+}
+
+// Random search meets (medium, 7, 90) with probability 1/5 * 1/40 * 0.0013 per evaluation, so not
+// once in a hundred runs of 3500.
+TEST(Ga, FindsTheWordAndTheWholeNumbersOfAMixedProblem) {
+  const auto problem = make_contract_problems(find_optimizer("ga")).back();  // mixed_bowl
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    MemoryEvaluator evaluator(*problem, {.budget = 3500});
+    run(evaluator, {}, seed);
+    const auto value = [](const Entry& entry) {
+      return entry.score.objectives[0] + entry.score.objectives[1];
+    };
+    const Entry& best = *std::ranges::min_element(evaluator.trace(), {}, value);
+    EXPECT_EQ((std::vector{best.evaluated[0], best.evaluated[2], best.evaluated[3]}),
+              (std::vector<double>{2, 7, 90}))
+        << "seed " << seed << ": " << value(best);
+  }
 }
 
 }  // namespace

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <span>
 
 #include "optimizers/table/optimizer_table.hpp"
 #include "optimizers/test_problems.hpp"
 #include "problems/analytic/analytic.hpp"
-#include "study/contract/memory_evaluator.hpp"
+#include "study/contract/contract_checks.hpp"
 
 namespace armwright {
 namespace {
@@ -93,6 +95,24 @@ TEST(LatinHypercube, TheBatchHasNoInfluenceOnThePoints) {
   const MemoryEvaluator parts = run(*problem, 90, {"samples=40", "batch=16"}, 7);
   EXPECT_EQ(whole.trace(), parts.trace());
   EXPECT_THAT(parts.batch_sizes(), ElementsAre(1, 16, 16, 8, 16, 16, 8, 16));
+}
+
+// With 40 points per design, each of the 40 whole numbers of `teeth` gets one interval, and each of
+// the 5 words gets eight.
+TEST(LatinHypercube, ADesignHasEveryValueOfADiscreteVariableAsOften) {
+  const OptimizerRow& row = find_optimizer("lhs");
+  const auto problem = make_contract_problems(row).back();  // mixed_bowl
+  MemoryEvaluator evaluator(*problem, {.budget = 41});
+  row.make(Options::parse("lhs", row.options, std::vector<std::string>{"samples=40"}))
+      ->minimize(evaluator, 1);
+  std::map<double, int> teeth;
+  std::map<double, int> oil;
+  for (const MemoryEvaluator::Entry& entry : std::span(evaluator.trace()).subspan(1)) {
+    ++oil[entry.asked[0]];
+    ++teeth[entry.asked[2]];
+  }
+  EXPECT_EQ(teeth.size(), 40u);
+  EXPECT_EQ(oil, (std::map<double, int>{{0, 8}, {1, 8}, {2, 8}, {3, 8}, {4, 8}}));
 }
 
 }  // namespace

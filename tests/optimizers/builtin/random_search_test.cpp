@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
+#include <span>
+#include <tuple>
 
 #include "optimizers/kolmogorov_smirnov.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/analytic/analytic.hpp"
-#include "study/contract/memory_evaluator.hpp"
+#include "study/contract/contract_checks.hpp"
 
 namespace armwright {
 namespace {
@@ -70,6 +73,30 @@ TEST(RandomSearch, TheBatchHasNoInfluenceOnThePoints) {
   row.make(Options::parse("random", row.options, std::vector<std::string>{"batch=64"}))
       ->minimize(large, 7);
   EXPECT_EQ(small.trace(), large.trace());
+}
+
+// Chi-square with 39 degrees of freedom (40 whole numbers) exceeds 72.1 once in a thousand seeds,
+// with 4 (5 words) 18.5.
+TEST(RandomSearch, EveryValueOfADiscreteVariableIsAsLikely) {
+  const OptimizerRow& row = find_optimizer("random");
+  const auto problem = make_contract_problems(row).back();  // mixed_bowl
+  constexpr int kDraws = 20000;
+  MemoryEvaluator evaluator(*problem, {.budget = kDraws + 1});
+  row.make(Options::parse("random", row.options, {}))->minimize(evaluator, 1);
+  for (const auto& [variable, values, bound] :
+       std::vector<std::tuple<std::size_t, int, double>>{{0, 5, 18.5}, {2, 40, 72.1}}) {
+    std::map<double, int> counts;
+    for (const MemoryEvaluator::Entry& entry : std::span(evaluator.trace()).subspan(1)) {
+      ++counts[entry.asked[variable]];
+    }
+    EXPECT_EQ(std::ssize(counts), values);
+    const double expected = double{kDraws} / values;
+    double chi_square = 0;
+    for (const auto& [value, count] : counts) {
+      chi_square += (count - expected) * (count - expected) / expected;
+    }
+    EXPECT_LT(chi_square, bound) << variable;
+  }
 }
 
 }  // namespace

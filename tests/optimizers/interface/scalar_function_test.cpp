@@ -4,8 +4,9 @@
 
 #include <cmath>
 
+#include "optimizers/table/optimizer_table.hpp"
 #include "optimizers/test_problems.hpp"
-#include "study/contract/memory_evaluator.hpp"
+#include "study/contract/contract_checks.hpp"
 
 namespace armwright {
 namespace {
@@ -90,6 +91,18 @@ TEST(ScalarFunctionTest, ExceptionsOfTheEvaluatorComeThrough) {
   MemoryEvaluator evaluator(*problem, {.budget = 2, .throw_at = 1});
   ScalarFunction function(evaluator);
   EXPECT_THROW(function.evaluate(function.space().start()), BrokenEvaluator);
+}
+
+TEST(ScalarFunctionTest, DiscreteVariablesAreRealInItsCoordinatesAndRoundedInItsPoints) {
+  const auto problem = make_contract_problems(find_optimizer("random")).back();  // mixed_bowl
+  MemoryEvaluator evaluator(*problem, {.budget = 10});
+  ScalarFunction function(evaluator);
+  EXPECT_THAT(function.space().lower(), ElementsAre(-0.5, -5, -9.5, std::log(0.5)));
+  EXPECT_THAT(function.space().upper(), ElementsAre(4.5, 5, 30.5, std::log(2000.5)));
+  function.evaluate(function.space().upper());
+  function.evaluate(std::vector<double>{1.4, 0.25, -3.6, std::log(17.3)});
+  EXPECT_THAT(evaluator.trace()[0].asked, ElementsAre(4, 5, 30, 2000));
+  EXPECT_THAT(evaluator.trace()[1].asked, ElementsAre(1, 0.25, -4, 17));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "optimizers/table/optimizer_table.hpp"
 #include "optimizers/test_problems.hpp"
 #include "problems/analytic/analytic.hpp"
-#include "study/contract/memory_evaluator.hpp"
+#include "study/contract/contract_checks.hpp"
 
 namespace armwright {
 namespace {
@@ -148,6 +148,28 @@ TEST_F(PluginLibrary, InCAndCppItGetsWhatProgramsGet) {
                     {98, 98, 3}, {1, 14, 3}, {0, 1, 3}, {0, 0, 0}}));  // the last after the end
     }
   }
+}
+
+TEST_F(PluginLibrary, OneThatDeclaresThemSeesTheTypesOfVariables) {
+  const OptimizerRow row = load_optimizer(plugin("typed"));
+  EXPECT_TRUE(row.capabilities.integer && row.capabilities.categorical);
+  const auto problem = make_contract_problems(row).back();
+  MemoryEvaluator evaluator(*problem, {.budget = 10});
+  row.make(Options::parse(row.name, row.options, {}))->minimize(evaluator, 1);
+  EXPECT_EQ(evaluator.recommended(),
+            (std::vector<std::vector<double>>{
+                {2, 0, 4, 5}, {0, -5, 5, 0}, {1, -9, 30, 0}, {1, 1, 2000, 0}}));  // "thick" has 5
+  EXPECT_EQ(evaluator.trace().at(0).asked, (std::vector<double>{1, -1.375, 21, 11}));
+}
+
+TEST_F(PluginLibrary, OneThatDoesNotDeclareThemSeesRealVariables) {
+  const OptimizerRow row = load_optimizer(plugin("good"));
+  const auto problem = make_contract_problems(row).back();
+  MemoryEvaluator evaluator(*problem, {.budget = 100, .capabilities = row.capabilities});
+  row.make(Options::parse(row.name, row.options, std::vector<std::string>{"start=middle"}))
+      ->minimize(evaluator, 1);
+  EXPECT_EQ(evaluator.trace().at(0).asked, (std::vector<double>{2, 0, 10.5, 1000.5}));
+  EXPECT_EQ(evaluator.trace().at(0).evaluated, (std::vector<double>{2, 0, 11, 1001}));
 }
 
 TEST_F(PluginLibrary, OneOfVersionOneRunsAsItDid) {

@@ -17,7 +17,7 @@
 #include "problems/analytic/analytic.hpp"
 #include "process/command_words.hpp"
 #include "process/line_process.hpp"
-#include "study/contract/memory_evaluator.hpp"
+#include "study/contract/contract_checks.hpp"
 
 namespace armwright {
 namespace {
@@ -147,6 +147,26 @@ TEST_F(PluginProcess, AsksForThePointsOfItsAlgorithmToTheLastBit) {
   EXPECT_THAT(evaluator.batch_sizes(), ElementsAre(1, 8, 8, 8, 8, 8, 8, 8, 8));
   EXPECT_EQ(evaluator.generations(), 9);
   EXPECT_EQ(evaluator.calls_after_stop(), 0);
+}
+
+TEST_F(PluginProcess, SeesTheTypesOfVariablesThatItDeclares) {
+  const TemporaryFolder folder;
+  const auto find_seen = [&](const std::string& capabilities) {
+    const std::string command = "exec:python3 '" + script("typed.py") + "' bounds " + capabilities;
+    const OptimizerRow row = load_optimizer(command);
+    const auto problem = make_contract_problems(row).back();
+    MemoryEvaluator evaluator(*problem, {.budget = 5, .capabilities = row.capabilities});
+    minimize(command, evaluator, 1, {"log=" + (folder / "log").string()});
+    EXPECT_EQ(evaluator.trace().size(), 1u);
+    return read_text(folder / "log");
+  };
+  EXPECT_THAT(find_seen("integer categorical"),
+              HasSubstr("oil category 0.0 4.0 ['thin', 'light', 'medium', 'heavy', 'thick']\n"
+                        "gain None -5.0 5.0 None\nteeth integer -9.0 30.0 None\n"
+                        "turns integer 1.0 2000.0 None\n"));
+  EXPECT_THAT(find_seen("integer"), HasSubstr("oil integer 0.0 4.0 None\n"));
+  EXPECT_THAT(find_seen(""), HasSubstr("oil None -0.5 4.5 None\ngain None -5.0 5.0 None\n"
+                                       "teeth None -9.5 30.5 None\nturns None 0.5 2000.5 None\n"));
 }
 
 TEST_F(PluginProcess, TheSameSeedGivesTheSameTraceAndAnotherSeedAnother) {

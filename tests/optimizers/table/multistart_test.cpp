@@ -9,7 +9,7 @@
 #include "optimizers/table/optimizer_table.hpp"
 #include "optimizers/test_problems.hpp"
 #include "problems/analytic/analytic.hpp"
-#include "study/contract/memory_evaluator.hpp"
+#include "study/contract/contract_checks.hpp"
 
 namespace armwright {
 namespace {
@@ -219,6 +219,33 @@ TEST_F(MultistartTest, WhatCannotBeRestartedIsRefused) {
   spread.options[0].name = "spread";
   EXPECT_THAT(usage_error_of([&] { make_multistart_row(spread); }),
               HasSubstr("'compass' has an option 'spread' itself"));
+}
+
+TEST(Multistart, DrawsWholeStartsForAnOptimizerOfIntegers) {
+  OptimizerRow inner;
+  inner.name = "inner";
+  inner.capabilities = {.local = true, .integer = true, .categorical = true};
+  inner.make = [](const Options&) -> std::unique_ptr<Optimizer> {
+    class Start : public Optimizer {
+      void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
+        std::vector<double> x;
+        for (const DecisionVariable& variable : evaluator.problem().variables) {
+          x.push_back(variable.start);
+        }
+        evaluator.evaluate({&x, 1});
+      }
+    };
+    return std::make_unique<Start>();
+  };
+  const OptimizerRow row = make_multistart_row(inner);
+  const auto problem = make_contract_problems(row).back();  // mixed_bowl
+  MemoryEvaluator evaluator(*problem, {.budget = 50, .capabilities = row.capabilities});
+  row.make(Options::parse(row.name, row.options, {}))->minimize(evaluator, 1);
+  ASSERT_EQ(evaluator.trace().size(), 50u);
+  for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
+    EXPECT_EQ(entry.asked, entry.evaluated);
+  }
+  EXPECT_NE(evaluator.trace()[1].asked, evaluator.trace()[2].asked);
 }
 
 }  // namespace

@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/temporary_folder.hpp"
+#include "report/formats/formats.hpp"
 #include "report/hand_made_traces.hpp"
+#include "study/contract/contract_checks.hpp"
+#include "study/run_support.hpp"
 
 namespace armwright {
 namespace {
@@ -104,6 +108,42 @@ TEST(TracedEvaluations, HaveAFirstALastAndTheEarliestOfTheBestFeasible) {
   EXPECT_EQ(trace.evaluations.first()->number, 1u);
   EXPECT_EQ(trace.evaluations.best()->number, 2u);
   EXPECT_EQ(trace.evaluations.last()->number, 3u);
+}
+
+// Asks for one point of whole numbers, and for one that is rounded.
+class TwoPoints : public Optimizer {
+ public:
+  void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
+    evaluator.evaluate(std::vector<std::vector<double>>{{2, 0.5, 3, 10}, {1.25, 0.5, 3, 9.75}});
+  }
+};
+
+TEST(RunTraces, ProblemsWithDiscreteVariablesHaveProposalsAndWords) {
+  RunPlan plan;
+  plan.optimizer.name = "two";
+  plan.optimizer.make = [](const Options&) { return std::make_unique<TwoPoints>(); };
+  plan.problem.problem = make_contract_problems(plan.optimizer).back();  // mixed_bowl
+  plan.problem.name = "mixed_bowl";
+  plan.problem.resolved_json = load_problem("sphere").resolved_json;  // names the function only
+  plan.budget = 2;
+  const TemporaryFolder folder;
+  StopSignal stop;
+  SilentObserver observer;
+  ASSERT_TRUE(execute_run({plan, folder / "run", 1, {}}, stop, observer));
+  const CollectedRuns collected = collect_runs(find_runs(folder / "run").runs);
+  write_csv(collected, folder / "csv");
+  const std::string csv = read_file(folder / "csv" / "evaluations" / "mixed_bowl.csv", 1 << 16);
+  EXPECT_THAT(csv,
+              AllOf(HasSubstr(",x.turns,proposed.oil,proposed.gain,proposed.teeth,"
+                              "proposed.turns\n"),
+                    HasSubstr(",2,0.5,3,10,,,,\n"), HasSubstr(",1,0.5,3,10,1.25,0.5,3,9.75\n")));
+  write_json(collected, folder / "json");
+  const auto problem =
+      nlohmann::json::parse(read_file(folder / "json" / "runs.json", 1 << 16))["problems"][0];
+  EXPECT_EQ(problem["discrete_variables"]["oil"][4], "thick");
+  EXPECT_EQ(problem["discrete_variables"]["teeth"], nlohmann::json::array());
+  EXPECT_FALSE(problem["runs"][0]["evaluations"][0].contains("proposed"));
+  EXPECT_EQ(problem["runs"][0]["evaluations"][1]["proposed"][0], 1.25);
 }
 
 }  // namespace

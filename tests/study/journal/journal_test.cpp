@@ -31,6 +31,12 @@ TEST(Journal, KeepsEveryFieldBitByBit) {
   record.evaluation.case_errors = {std::bit_cast<double>(0xfff8000000c0ffee), std::nan("")};
   EvaluationRecord empty;
   empty.index = 1;
+  EvaluationRecord rounded = make_record(4);
+  rounded.proposed = {0.4, -3.7, 1e-300};
+  EvaluationRecord differentiated = rounded;
+  differentiated.index = 5;
+  differentiated.with_jacobian = true;
+  differentiated.evaluation.jacobian = {1, 2, 3, 4, 5, 6};
   EvaluationRecord judged = make_record(0);
   judged.cases.role = CaseRole::test;
   EvaluationRecord validated = make_record(8);
@@ -40,7 +46,8 @@ TEST(Journal, KeepsEveryFieldBitByBit) {
     Journal journal(folder / "journal", content);
     EXPECT_TRUE(content.training.empty());
     EXPECT_EQ(content.torn_bytes, 0);
-    for (const auto* const each : {&record, &validated, &empty, &judged}) {
+    for (const auto* const each :
+         {&record, &validated, &empty, &judged, &differentiated, &rounded}) {
       journal.append(*each);
     }
     journal.append(LateRecommendations{2, {1.5, -2.5, 1e-300, 4}});
@@ -51,9 +58,11 @@ TEST(Journal, KeepsEveryFieldBitByBit) {
   ASSERT_TRUE(content.late.has_value());
   EXPECT_EQ(content.late->count, 2u);
   EXPECT_EQ(content.late->x, (std::vector<double>{1.5, -2.5, 1e-300, 4}));
-  ASSERT_EQ(content.training.size(), 2);
+  ASSERT_EQ(content.training.size(), 4);
   expect_same(content.training[0], empty);  // sorted by index
   expect_same(content.training[1], record);
+  expect_same(content.training[2], rounded);
+  expect_same(content.training[3], differentiated);
   ASSERT_EQ(content.judgements.size(), 2);
   expect_same(content.judgements[0], validated);  // in the order written
   expect_same(content.judgements[1], judged);
@@ -100,6 +109,11 @@ TEST(Journal, FileHasTheDocumentedBytes) {
     record.evaluation.reason = "c";
     record.evaluation.metrics = {-2.0};
     journal.append(record);
+    record.proposed = {1.5};
+    journal.append(record);
+    record.with_jacobian = true;
+    record.evaluation.jacobian = {2.0};
+    journal.append(record);
     journal.append(EndRecord{"ok", 6});
   }
   const auto little = [](std::uint64_t value, int bytes) {
@@ -112,14 +126,18 @@ TEST(Journal, FileHasTheDocumentedBytes) {
   const auto framed = [&](const std::string& payload) {
     return little(payload.size(), 4) + little(calc_crc32(payload), 4) + payload;
   };
-  const std::string evaluation =
-      std::string("\x01\x01\x02\x03", 4) + little(5, 4) + little(258, 8) + little(3, 8) +
-      little(2, 4) + "ab" + little(1, 4) + little(4, 8) +                  // set, numbers
+  const std::string fields =
+      std::string("\x01\x02\x03", 3) + little(5, 4) + little(258, 8) + little(3, 8) + little(2, 4) +
+      "ab" + little(1, 4) + little(4, 8) +                                 // set, numbers
       little(1, 4) + little(0x3ff0000000000000, 8) + little(1, 4) + "c" +  // x, reason
       little(0, 4) + little(0, 4) + little(0, 4) +  // objectives, constraints, case errors
       little(1, 4) + little(0xc000000000000000, 8) + little(0, 4);  // metrics, residuals
   const std::string end = "\x02" + little(6, 8) + little(2, 4) + "ok";
-  EXPECT_EQ(read_bytes(folder / "journal"), "AWJRNL01" + framed(evaluation) + framed(end));
+  const std::string proposal = little(1, 4) + little(0x3ff8000000000000, 8);
+  const std::string jacobian = little(1, 4) + little(0x4000000000000000, 8);
+  EXPECT_EQ(read_bytes(folder / "journal"),
+            "AWJRNL01" + framed("\x01" + fields) + framed("\x05" + fields + proposal) +
+                framed("\x06" + fields + jacobian + proposal) + framed(end));
 }
 
 // The program of docs/reliability.md.

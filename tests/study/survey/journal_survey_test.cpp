@@ -221,5 +221,34 @@ TEST_F(JournalSurveyTest, LateRecommendationsOutliveARepair) {
   EXPECT_EQ(repaired.late->x, (std::vector<double>{1, 2}));
 }
 
+TEST_F(JournalSurveyTest, RecordsWithAProposalOutliveARepair) {
+  std::size_t damaged = 0;
+  {
+    std::filesystem::remove(file_);
+    JournalContent content;
+    Journal journal(file_, content);
+    for (std::uint64_t i = 0; i < 6; ++i) {
+      EvaluationRecord record = make_record(i);
+      record.proposed = {0.5, 1.5, 2.5};
+      record.with_jacobian = i % 2 == 1;
+      if (i == 2) {
+        journal.flush();
+        damaged = std::filesystem::file_size(file_) + 20;
+      }
+      journal.append(record);
+    }
+    journal.close();
+  }
+  flip(damaged);
+  JournalRepair done;
+  const JournalContent content = repair(done);
+  ASSERT_EQ(content.training.size(), 5u);
+  EXPECT_EQ(content.training.get_index(2), 3u) << "the record behind the damage is found";
+  for (const EvaluationRecord& record : content.training) {
+    EXPECT_EQ(record.proposed, (std::vector<double>{0.5, 1.5, 2.5}));
+    EXPECT_EQ(record.with_jacobian, record.index % 2 == 1);
+  }
+}
+
 }  // namespace
 }  // namespace armwright
