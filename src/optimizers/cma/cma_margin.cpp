@@ -39,8 +39,9 @@ CmaMarginal correct_margin(const CmaMarginal& marginal, double deviation, const 
   assert(alpha > 0 && alpha <= 0.5);
   const double mean = marginal.mean;
   const double s = std::max(marginal.scale * deviation, 1e-300);
-  const double below = calc_exceedance((mean - cell.lower) / s);
-  const double above = calc_exceedance((cell.upper - mean) / s);
+  // By a rounding, the mean may lie just outside its cell.
+  const double below = calc_exceedance(std::max(0.0, mean - cell.lower) / s);
+  const double above = calc_exceedance(std::max(0.0, cell.upper - mean) / s);
   const bool has_lower = std::isfinite(cell.lower);
   const bool has_upper = std::isfinite(cell.upper);
   if (has_lower && has_upper) {

@@ -77,6 +77,17 @@ TEST(CmaMargin, ATooNarrowOneReachesBothNeighbours) {
   }
 }
 
+TEST(CmaMargin, AMeanThatARoundingHasMovedOutOfItsCellComesBack) {
+  const CmaCell cell{0.25, 0.5};
+  for (const double mean : {std::nextafter(0.25, 0), std::nextafter(0.5, 1)}) {
+    const CmaMarginal corrected = correct_margin({mean, 1}, 1e-20, cell, 0.04);
+    EXPECT_GE(corrected.mean, cell.lower);
+    EXPECT_LE(corrected.mean, cell.upper);
+    EXPECT_GE(calc_below(corrected, 1e-20, cell), 0.02 - 1e-12);
+    EXPECT_GE(calc_above(corrected, 1e-20, cell), 0.02 - 1e-12);
+  }
+}
+
 TEST(CmaMargin, RaisingOneNeighbourTakesFromTheOther) {
   // Below: 1e-3 is raised to alpha / 2 = 0.01. Above: 0.2. By the equations of the header,
   // S = 0.01 + 0.2 + 0.799 = 1.009, and 0.2 becomes 0.2 - 0.009 / (1.009 - 0.03) * 0.19.
