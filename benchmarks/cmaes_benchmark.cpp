@@ -1,7 +1,9 @@
 // Measures how many evaluations CMA-ES needs: ours, pagmo's and the published ones. Prints the
-// table of docs/cmaes.md as Markdown and takes two minutes.
+// tables of docs/cmaes.md as Markdown and takes two minutes. With --integers FILE, it prints the
+// table of functions with integers only, and writes it to the file as CSV.
 //
 //   build/release/bin/cmaes_benchmark > table.md
+//   build/release/bin/cmaes_benchmark --integers results/mixed-integer/cmaes.csv
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,12 +11,14 @@
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -98,15 +102,21 @@ Vector draw_start(const Setting& setting, int seed) {
   return start;
 }
 
+std::vector<DecisionVariable> make_variables(const Setting& setting, int seed) {
+  std::vector<DecisionVariable> variables;
+  for (const double value : draw_start(setting, seed)) {
+    variables.push_back({"x", "", -setting.half_width, setting.half_width, value, Scale::linear});
+  }
+  return variables;
+}
+
 // Counts evaluations until the target is met, then stops.
 class TargetEvaluator : public Evaluator {
  public:
-  TargetEvaluator(const Setting& setting, const Vector& start) : setting_(setting) {
+  TargetEvaluator(const Setting& setting, std::vector<DecisionVariable> variables)
+      : setting_(setting) {
     problem_.name = setting.function.name;
-    for (const double value : start) {
-      problem_.variables.push_back(
-          {"x", "", -setting.half_width, setting.half_width, value, Scale::linear});
-    }
+    problem_.variables = std::move(variables);
     problem_.objectives = {{"f", ""}};
   }
 
@@ -146,7 +156,9 @@ struct Outcome {
   std::int64_t evaluations = 0;
 };
 
-Outcome run_own(const Setting& setting, int seed, const std::vector<std::string>& more = {}) {
+// Runs cmaes on the given variables, or on those of the setting.
+Outcome run_own(const Setting& setting, int seed, const std::vector<std::string>& more = {},
+                std::vector<DecisionVariable> variables = {}) {
   const OptimizerRow& row = find_optimizer("cmaes");
   std::vector<std::string> assignments = {
       fmt::format("sigma={}", setting.sigma / (2 * setting.half_width)),
@@ -154,7 +166,8 @@ Outcome run_own(const Setting& setting, int seed, const std::vector<std::string>
       fmt::format("restarts={}", setting.restarts),
       fmt::format("tol_fun={}", std::min(1e-12, 1e-4 * std::abs(setting.target)))};
   assignments.insert(assignments.end(), more.begin(), more.end());
-  TargetEvaluator evaluator(setting, draw_start(setting, seed));
+  TargetEvaluator evaluator(
+      setting, variables.empty() ? make_variables(setting, seed) : std::move(variables));
   row.make(Options::parse("cmaes", row.options, assignments))
       ->minimize(evaluator, static_cast<std::uint64_t>(seed));
   return {evaluator.hit(), evaluator.count()};
@@ -357,6 +370,95 @@ void print_bounds() {
   }
 }
 
+// Runs sphere-int and ellipsoid-int as in Hamano et al. 2022, section 5: the distance of the start
+// from the minimiser is uniform in [1, 3] along each axis, rounded along integers, sigma is 1, and
+// the budget is 10,000 n. `is_rounded` makes the integers real variables that the function rounds.
+Outcome run_integers(const char* name, int dimension, int seed, bool is_rounded,
+                     const char* restarts, const std::vector<std::string>& options) {
+  const std::shared_ptr<const Problem> problem =
+      make_analytic({.name = name, .dimension = dimension});
+  const ProblemDescription& description = problem->description();
+  RandomStream random("benchmark/cmaes/integers", static_cast<std::uint64_t>(seed));
+  std::vector<DecisionVariable> variables = description.variables;
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    DecisionVariable& variable = variables[i];
+    variable.start = settle_value(variable, description.known_optimum[i] + random.uniform(1, 3));
+    if (is_rounded && variable.type == VariableType::integer) {
+      variable.type = VariableType::real;
+      variable.lower -= 0.5;
+      variable.upper += 0.5;
+    }
+  }
+  const auto calc = [problem, &description](std::span<const double> x) {
+    Vector settled(x.begin(), x.end());
+    for (std::size_t i = 0; i < settled.size(); ++i) {
+      settled[i] = settle_value(description.variables[i], settled[i]);
+    }
+    CaseJob job;
+    job.x = settled;
+    return problem->simulate(std::span(&job, 1)).front().error;
+  };
+  return run_own({.function = {name, calc},
+                  .dimension = dimension,
+                  .half_width = 10,
+                  .sigma = 1,
+                  .target = 1e-10,
+                  .budget = 10000 * dimension,
+                  .restarts = restarts},
+                 seed, options, variables);
+}
+
+void print_integers(const std::string& file) {
+  struct Variant {
+    const char* name;
+    bool is_rounded;
+    const char* restarts;
+    std::vector<std::string> options;
+  };
+  const std::vector<Variant> variants = {
+      {"defaults", false, "ipop", {}},
+      {"restarts=none", false, "none", {}},
+      {"restarts=none orthogonal=false", false, "none", {"orthogonal=false"}},
+      {"restarts=none orthogonal=false active=false",
+       false,
+       "none",
+       {"orthogonal=false", "active=false"}},
+      {"restarts=none without margin", true, "none", {}},
+  };
+  constexpr int kRuns = 100;
+  std::ofstream csv(file);
+  csv << "function,n,budget,variant,runs,reached,lower_quartile,median,upper_quartile\n";
+  fmt::print("| function | n | variant | reached | evaluations |\n|---|---|---|---|---|\n");
+  for (const char* name : {"sphere-int", "ellipsoid-int"}) {
+    for (const int n : {20, 40}) {
+      for (const Variant& variant : variants) {
+        std::vector<std::int64_t> counts;
+        for (int seed = 1; seed <= kRuns; ++seed) {
+          const Outcome outcome =
+              run_integers(name, n, seed, variant.is_rounded, variant.restarts, variant.options);
+          if (outcome.hit) {
+            counts.push_back(outcome.evaluations);
+          }
+        }
+        std::ranges::sort(counts);
+        // Of the runs that reached the target, as the paper counts.
+        const auto quantile = [&](std::size_t quarters) {
+          return counts.empty() ? 0 : counts[(counts.size() - 1) * quarters / 4];
+        };
+        csv << fmt::format("{},{},{},{},{},{},{},{},{}\n", name, n, 10000 * n, variant.name, kRuns,
+                           counts.size(), quantile(1), quantile(2), quantile(3));
+        fmt::print("| {} | {} | {} | {}/{} | {} ({} to {}) |\n", name, n, variant.name,
+                   counts.size(), kRuns, quantile(2), quantile(1), quantile(3));
+        std::fflush(stdout);
+      }
+    }
+  }
+  csv.close();
+  if (!csv) {
+    fmt::print(stderr, "cannot write {}\n", file);
+  }
+}
+
 void print_speed() {
   Setting s{.function = {"sphere", calc_sphere},
             .dimension = 20,
@@ -375,7 +477,11 @@ void print_speed() {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc == 3 && std::string_view(argv[1]) == "--integers") {
+    print_integers(argv[2]);
+    return 0;
+  }
   print_comparison();
   print_restarts();
   print_bounds();

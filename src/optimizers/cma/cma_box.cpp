@@ -2,11 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace armwright {
 namespace {
 
 constexpr double kBend = 0.05;
+
+// Returns the variables with half a step more at both ends of discrete ones.
+std::vector<DecisionVariable> widen(std::span<const DecisionVariable> variables) {
+  std::vector<DecisionVariable> wider(variables.begin(), variables.end());
+  for (DecisionVariable& variable : wider) {
+    if (variable.type != VariableType::real) {
+      variable.lower -= 0.5;
+      variable.upper += 0.5;
+    }
+  }
+  return wider;
+}
 
 }  // namespace
 
@@ -35,12 +48,27 @@ double calc_preimage_of_share(double share) {
   return share;
 }
 
+CmaBox::CmaBox(std::span<const DecisionVariable> variables)
+    : variables_(variables.begin(), variables.end()), space_(widen(variables)) {}
+
+bool CmaBox::is_discrete(std::size_t coordinate) const {
+  return variables_[coordinate].type != VariableType::real;
+}
+
+double CmaBox::calc_share(std::size_t coordinate, double value) const {
+  const double lower = space_.lower()[coordinate];
+  const double width = space_.upper()[coordinate] - lower;
+  return width > 0 ? (value - lower) / width : 0.5;
+}
+
+double CmaBox::to_coordinate(std::size_t coordinate, double share) const {
+  return is_discrete(coordinate) ? share : calc_preimage_of_share(share);
+}
+
 std::vector<double> CmaBox::make_start() const {
   std::vector<double> u;
   for (std::size_t i = 0; i < dimension(); ++i) {
-    const double width = space_.upper()[i] - space_.lower()[i];
-    const double share = width > 0 ? (space_.start()[i] - space_.lower()[i]) / width : 0.5;
-    u.push_back(calc_preimage_of_share(std::clamp(share, 0.0, 1.0)));
+    u.push_back(to_coordinate(i, std::clamp(calc_share(i, space_.start()[i]), 0.0, 1.0)));
   }
   return u;
 }
@@ -51,13 +79,45 @@ std::vector<double> CmaBox::to_point(std::span<const double> u) const {
   for (std::size_t i = 0; i < u.size(); ++i) {
     const double lower = space_.lower()[i];
     const double upper = space_.upper()[i];
-    const double share = calc_share_in_box(u[i]);
+    const double share = is_discrete(i) ? std::clamp(u[i], 0.0, 1.0) : calc_share_in_box(u[i]);
     // Computed from the nearer bound, so that both bounds are reached exactly.
     const double value =
         share < 0.5 ? lower + share * (upper - lower) : upper - (1 - share) * (upper - lower);
     coordinates.push_back(std::clamp(value, lower, upper));
   }
-  return space_.to_point(coordinates);
+  std::vector<double> point = space_.to_point(coordinates);
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    if (is_discrete(i)) {
+      point[i] = settle_value(variables_[i], point[i]);
+    }
+  }
+  return point;
+}
+
+std::vector<CmaCell> CmaBox::calc_cells(std::span<const double> u) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::vector<double> point = to_point(u);
+  std::vector<double> below = point;
+  std::vector<double> above = point;
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    if (is_discrete(i)) {
+      below[i] -= 0.5;
+      above[i] += 0.5;
+    }
+  }
+  below = space_.to_coordinates(below);
+  above = space_.to_coordinates(above);
+  std::vector<CmaCell> cells;
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    // A negative logarithmic variable has its larger values at smaller u.
+    const double direction = below[i] <= above[i] ? 1 : -1;
+    const double at_lower =
+        point[i] > variables_[i].lower ? calc_share(i, below[i]) : -direction * kInfinity;
+    const double at_upper =
+        point[i] < variables_[i].upper ? calc_share(i, above[i]) : direction * kInfinity;
+    cells.push_back({.lower = std::min(at_lower, at_upper), .upper = std::max(at_lower, at_upper)});
+  }
+  return cells;
 }
 
 }  // namespace armwright

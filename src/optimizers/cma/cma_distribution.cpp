@@ -107,6 +107,7 @@ CmaParameters make_cma_parameters(std::size_t dimension, const CmaSettings& sett
 
 struct CmaDistribution::State {
   Eigen::VectorXd mean;
+  Eigen::VectorXd scales;  // a: of the samples, one per coordinate
   Eigen::VectorXd sigma_path;
   Eigen::VectorXd covariance_path;
   Eigen::MatrixXd covariance;
@@ -126,6 +127,7 @@ CmaDistribution::CmaDistribution(CmaParameters parameters, std::span<const doubl
   const auto population = static_cast<Eigen::Index>(parameters_.population);
   State& s = *state_;
   s.mean = Eigen::Map<const Eigen::VectorXd>(mean.data(), n);
+  s.scales = Eigen::VectorXd::Ones(n);
   s.sigma_path = Eigen::VectorXd::Zero(n);
   s.covariance_path = Eigen::VectorXd::Zero(n);
   s.covariance = Eigen::MatrixXd::Identity(n, n);
@@ -154,7 +156,7 @@ const std::vector<std::vector<double>>& CmaDistribution::sample(RandomStream& ra
   s.y.noalias() = s.axes * (s.lengths.asDiagonal() * s.z);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     Eigen::Map<Eigen::VectorXd>(points_[i].data(), s.mean.size()) =
-        s.mean + sigma_ * s.y.col(static_cast<Eigen::Index>(i));
+        s.mean + sigma_ * s.scales.cwiseProduct(s.y.col(static_cast<Eigen::Index>(i)));
   }
   return points_;
 }
@@ -232,6 +234,17 @@ std::span<const double> CmaDistribution::mean() const {
 
 double CmaDistribution::calc_standard_deviation(std::size_t coordinate) const {
   return sigma_ * std::sqrt(std::max(0.0, covariance(coordinate, coordinate)));
+}
+
+CmaMarginal CmaDistribution::marginal(std::size_t coordinate) const {
+  const auto i = static_cast<Eigen::Index>(coordinate);
+  return {.mean = state_->mean(i), .scale = state_->scales(i)};
+}
+
+void CmaDistribution::set_marginal(std::size_t coordinate, const CmaMarginal& marginal) {
+  const auto i = static_cast<Eigen::Index>(coordinate);
+  state_->mean(i) = marginal.mean;
+  state_->scales(i) = marginal.scale;
 }
 
 double CmaDistribution::covariance(std::size_t row, std::size_t column) const {

@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "optimizers/cma/cma_margin.hpp"
 
 namespace armwright {
 
@@ -79,7 +80,8 @@ class CmaDistribution {
 
   const CmaParameters& parameters() const { return parameters_; }
 
-  // Draws `population` points and keeps them for update().
+  // Draws `population` points m + sigma a_i y_i and keeps the y for update(). The scales a_i are 1,
+  // except along discrete coordinates (cma_margin.hpp).
   const std::vector<std::vector<double>>& sample(RandomStream& random);
   // Adapts the distribution. `ranking` holds the indices of all points of the last sample, the best
   // first.
@@ -90,6 +92,8 @@ class CmaDistribution {
   double sigma() const { return sigma_; }
   std::int64_t generation() const { return generation_; }
   double calc_standard_deviation(std::size_t coordinate) const;  // sigma sqrt(C_ii)
+  CmaMarginal marginal(std::size_t coordinate) const;
+  void set_marginal(std::size_t coordinate, const CmaMarginal& marginal);
   double covariance(std::size_t row, std::size_t column) const;
   std::span<const double> covariance_path() const;  // p_c
   // Return sigma times the longest and the shortest axis of the ellipsoid at the last

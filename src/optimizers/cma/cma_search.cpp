@@ -33,7 +33,12 @@ class CmaSearch {
         evaluator_(evaluator),
         box_(evaluator.problem().variables),
         order_(evaluator.problem()),
-        random_("optimizer/cmaes", seed) {}
+        random_("optimizer/cmaes", seed) {
+    for (std::size_t i = 0; i < box_.dimension(); ++i) {
+      discrete_.push_back(box_.is_discrete(i));
+    }
+    has_discrete_ = has_discrete(evaluator.problem().variables);
+  }
 
   void search() {
     const std::size_t base =
@@ -66,8 +71,10 @@ class CmaSearch {
   }
 
   std::vector<double> draw_start() {
-    std::vector<double> u(box_.dimension());
-    std::ranges::generate(u, [this] { return calc_preimage_of_share(random_.uniform()); });
+    std::vector<double> u;
+    for (std::size_t i = 0; i < box_.dimension(); ++i) {
+      u.push_back(box_.to_coordinate(i, random_.uniform()));
+    }
     return u;
   }
 
@@ -108,7 +115,9 @@ class CmaSearch {
     cma.population = plan.population;
     cma.mu = cma.mu * plan.population / base_population_;
     CmaDistribution distribution(make_cma_parameters(box_.dimension(), cma), plan.mean, plan.sigma);
-    CmaTermination termination(distribution.parameters(), settings_.tolerances, plan.sigma);
+    CmaTermination termination(distribution.parameters(), settings_.tolerances, plan.sigma,
+                               discrete_);
+    widen_discrete(distribution);
     const std::int64_t first_evaluation = evaluations_;
     while (evaluations_ - first_evaluation < plan.budget) {
       if (evaluator_.stopped()) {
@@ -132,6 +141,7 @@ class CmaSearch {
       }
       const std::vector<std::size_t> ranking = measure ? measure->ranking : rank(*values);
       distribution.update(ranking);
+      correct_margins(distribution);
       evaluator_.recommend(box_.to_point(distribution.mean()));
       if (measure && measure->s > 0) {
         enlarge(distribution);
@@ -145,6 +155,39 @@ class CmaSearch {
       }
     }
     return true;
+  }
+
+  // Gives a discrete coordinate at first at least the width of its mean's cell as standard
+  // deviation. A share of the box would be too little for a few values.
+  void widen_discrete(CmaDistribution& distribution) const {
+    if (!has_discrete_) {
+      return;
+    }
+    const std::vector<CmaCell> cells = box_.calc_cells(distribution.mean());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (discrete_[i]) {
+        CmaMarginal marginal = distribution.marginal(i);
+        const double width = std::min(cells[i].upper, 1.0) - std::max(cells[i].lower, 0.0);
+        marginal.scale = std::max(1.0, width / distribution.calc_standard_deviation(i));
+        distribution.set_marginal(i, marginal);
+      }
+    }
+  }
+
+  void correct_margins(CmaDistribution& distribution) const {
+    if (!has_discrete_) {
+      return;
+    }
+    const std::vector<CmaCell> cells = box_.calc_cells(distribution.mean());
+    const double alpha = 1 / (static_cast<double>(box_.dimension()) *
+                              static_cast<double>(distribution.parameters().population));
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (discrete_[i]) {
+        distribution.set_marginal(
+            i, correct_margin(distribution.marginal(i), distribution.calc_standard_deviation(i),
+                              cells[i], alpha));
+      }
+    }
   }
 
   // Returns nothing if the evaluator stopped before the last point.
@@ -227,6 +270,8 @@ class CmaSearch {
   std::int64_t last_large_run_ = 0;
   std::int64_t evaluations_ = 0;
   bool is_first_generation_ = true;
+  std::vector<bool> discrete_;  // one per coordinate
+  bool has_discrete_ = false;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // The optimizer cmaes: the covariance matrix adaptation evolution strategy with active update,
 // bounds, restarts and, on request, handling of noise (Hansen 2016, The CMA Evolution Strategy: A
-// Tutorial). Each generation samples cma_distribution.hpp in the box of cma_box.hpp. When
+// Tutorial). Each generation samples cma_distribution.hpp in the box of cma_box.hpp. Discrete
+// variables get values of their type, and cma_margin.hpp keeps them from freezing. When
 // cma_termination.hpp reports convergence, the strategy starts again: with larger populations
 // (Auger and Hansen 2005), or with larger and smaller ones alternately (Hansen 2009).
 #pragma once

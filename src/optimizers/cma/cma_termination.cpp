@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace armwright {
 namespace {
@@ -49,8 +50,9 @@ const char* describe(CmaEnd end) {
 }
 
 CmaTermination::CmaTermination(const CmaParameters& parameters, const CmaTolerances& tolerances,
-                               double sigma)
-    : tolerances_(tolerances), initial_sigma_(sigma) {
+                               double sigma, std::vector<bool> discrete)
+    : tolerances_(tolerances), initial_sigma_(sigma), discrete_(std::move(discrete)) {
+  discrete_.resize(parameters.dimension);
   const auto n = static_cast<double>(parameters.dimension);
   const auto population = static_cast<double>(parameters.population);
   short_history_ = static_cast<std::size_t>(10 + std::ceil(30 * n / population));
@@ -100,8 +102,11 @@ CmaEnd CmaTermination::check_distribution(const CmaDistribution& distribution) c
   const std::span<const double> mean = distribution.mean();
   const std::span<const double> path = distribution.covariance_path();
   const double smallest_step = tolerances_.step * initial_sigma_;
-  bool is_small = true;
+  bool is_small = std::ranges::find(discrete_, false) != discrete_.end();
   for (std::size_t i = 0; i < n; ++i) {
+    if (discrete_[i]) {
+      continue;
+    }
     const double deviation = distribution.calc_standard_deviation(i);
     if (mean[i] == mean[i] + 0.2 * deviation) {
       return CmaEnd::no_effect_coord;

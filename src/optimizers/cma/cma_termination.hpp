@@ -36,7 +36,10 @@ const char* describe(CmaEnd end);
 
 class CmaTermination {
  public:
-  CmaTermination(const CmaParameters& parameters, const CmaTolerances& tolerances, double sigma);
+  // `discrete` has one entry per coordinate; without entries all are real. A discrete coordinate
+  // does not end the run by the size of its steps, which the margin keeps large enough.
+  CmaTermination(const CmaParameters& parameters, const CmaTolerances& tolerances, double sigma,
+                 std::vector<bool> discrete = {});
 
   // Call this once after every update. `sorted_values` are the values of the generation, the best
   // first. Returns the criterion that ends the run, or none.
@@ -49,6 +52,7 @@ class CmaTermination {
 
   CmaTolerances tolerances_;
   double initial_sigma_;
+  std::vector<bool> discrete_;
   std::size_t short_history_;
   std::size_t long_history_;
   std::int64_t generation_limit_;

@@ -140,14 +140,21 @@ std::vector<OptionSpec> make_option_specs() {
 std::vector<OptimizerRow> make_cmaes_rows() {
   return {{
       .name = "cmaes",
-      .summary = "CMA-ES: adapts a normal distribution; active update, restarts",
+      .summary = "CMA-ES: adapts a normal distribution; active update, restarts, margin for "
+                 "integers",
       .source =
           "Hansen 2016, The CMA Evolution Strategy: A Tutorial (arXiv:1604.00772); Auger and "
           "Hansen 2005, A restart CMA evolution strategy with increasing population size; "
           "Hansen 2009, Benchmarking a BI-population CMA-ES on the BBOB-2009 function testbed; "
-          "Hansen et al. 2009, A method for handling uncertainty in evolutionary optimization",
-      .capabilities =
-          {.bounds = true, .batch = true, .noisy = true, .stochastic = true, .generations = true},
+          "Hansen et al. 2009, A method for handling uncertainty in evolutionary optimization; "
+          "Hamano et al. 2022, CMA-ES with margin: lower-bounding marginal probability for "
+          "mixed-integer black-box optimization",
+      .capabilities = {.bounds = true,
+                       .batch = true,
+                       .noisy = true,
+                       .stochastic = true,
+                       .generations = true,
+                       .integer = true},
       .options = make_option_specs(),
       .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
         return std::make_unique<CmaEs>(options);

@@ -14,8 +14,8 @@
 namespace armwright {
 namespace {
 
-// Larger than every value that a function has inside its box; the largest is below 1e10, of the
-// 1000-dimensional ellipsoid. Small enough that a model fitted through it keeps its digits: its
+// Larger than every value that a function has inside its box; the largest is below 2e10, of the
+// 1000-dimensional ellipsoid-int. Small enough that a model fitted through it keeps its digits: its
 // square is far from overflow, and the spacing of numbers near it is 1e-4.
 constexpr double kPenalty = 1e12;
 
@@ -33,14 +33,18 @@ class AnalyticProblem : public Problem {
     if (choice.instance > 0) {
       description_.summary += fmt::format(", instance {}", choice.instance);
     }
+    const auto n = static_cast<std::size_t>(dimension);
+    const std::size_t first_integer = n - count_integers(function, n);
     for (int i = 0; i < dimension; ++i) {
       const auto place = static_cast<std::size_t>(i);
       const double start = function.start.size() == 1 ? function.start[0] : function.start[place];
-      description_.variables.push_back({.name = fmt::format("x_{}", i + 1),
-                                        .unit = "",
-                                        .lower = function.lower,
-                                        .upper = function.upper,
-                                        .start = start});
+      description_.variables.push_back(
+          {.name = fmt::format("x_{}", i + 1),
+           .unit = "",
+           .lower = function.lower,
+           .upper = function.upper,
+           .start = start,
+           .type = place < first_integer ? VariableType::real : VariableType::integer});
     }
     description_.known_optimum = instance_.minimiser;
     description_.optimum = function.minimum + instance_.f_opt;
@@ -168,6 +172,10 @@ const AnalyticFunction& find_analytic(std::string_view name) {
     }
   }
   throw Error(ErrorKind::usage, describe_unknown("analytic function", name, analytic_names()));
+}
+
+std::size_t count_integers(const AnalyticFunction& function, std::size_t dimension) {
+  return function.has_integers ? dimension / 2 : 0;
 }
 
 int get_first_instance(const AnalyticFunction& function) {

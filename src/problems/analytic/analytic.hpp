@@ -9,13 +9,18 @@
 // and with four variables
 //   constrained the Rosen-Suzuki problem: convex, three inequality constraints (two active),
 //               minimum -44 at (0, 1, 2, -1)
+// The functions sphere-int and ellipsoid-int are sphere and ellipsoid with whole numbers as the
+// second half of the variables (floor(n/2) of them). Source: Hamano, Saito, Nomura and Shirakawa
+// 2022, CMA-ES with Margin, SphereInt and EllipsoidInt.
 // The functions bbob-f1, f2, f3, f8, f10 and f15 are the same sums over the z of bbob.hpp.
 //
 // An instance maps the decision vector x to z (function_instance.hpp). In the plain form, instance
 // 0, z = x - s. The shift s_i = 4 (frac(i g) - 1/2), g = (sqrt(5) - 1)/2, lies in (-2, 2) and is
 // the same for every function. It moves the minimiser away from the centre of the box, from the
 // start and from any pattern that an optimizer might favour by construction. The other instances
-// have a random shift and, except for the sphere, a random rotation.
+// have a random shift and, except for the sphere, a random rotation. Along an integer variable the
+// shift is a whole number: that of the plain form is rounded away from 0, the random one to the
+// nearest. Functions with integer variables are not rotated.
 //
 // All functions but `constrained` are sums of squares and have residuals. Rosenbrock has two
 // residuals per pair of neighbouring variables: 10 (y_{i+1} - y_i^2) and 1 - y_i. Rastrigin has two
@@ -54,6 +59,7 @@ struct AnalyticFunction {
   int bbob = 0;                        // its number if it is a function of BBOB; otherwise 0
   bool has_instances = false;          // false: it has the plain form only
   bool is_rotated = false;             // true: instances of our own functions are rotated
+  bool has_integers = false;           // true: the second half of the variables are integers
   int constraint_count = 0;
   double (*calc_value)(Point) = nullptr;
   std::vector<double> (*calc_constraints)(Point) = nullptr;  // null: no constraints
@@ -81,6 +87,9 @@ const std::vector<AnalyticFunction>& analytic_table();
 std::vector<std::string> analytic_names();
 // Throws Error{usage} for an unknown name.
 const AnalyticFunction& find_analytic(std::string_view name);
+
+// Returns how many of the n variables are integers. They are the last ones.
+std::size_t count_integers(const AnalyticFunction& function, std::size_t dimension);
 
 // Returns the lowest instance number: 0, the plain form, or 1 for a function of BBOB.
 int get_first_instance(const AnalyticFunction& function);

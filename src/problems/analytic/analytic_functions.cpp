@@ -102,6 +102,27 @@ std::vector<double> calc_rosen_suzuki_constraints(Point x) {
           2 * a + b + c + 2 * x[0] - x[1] - x[3] - 5};
 }
 
+// Returns the row of a function whose second half of variables are integers. Box and start are ours:
+// the paper has the integers in [-10, 10], no bounds for the real variables, and a random start.
+AnalyticFunction make_mixed_row(const std::string& name, const std::string& summary,
+                                const std::string& paper_name, double (*calc_value)(Point),
+                                std::vector<double> (*calc_residuals)(Point)) {
+  return {.name = name,
+          .summary = summary,
+          .source =
+              "Hamano, Saito, Nomura and Shirakawa 2022, CMA-ES with margin: lower-bounding "
+              "marginal probability for mixed-integer black-box optimization, " +
+              paper_name,
+          .smallest_dimension = 2,
+          .lower = -10,
+          .upper = 10,
+          .start = {-5},
+          .has_instances = true,
+          .has_integers = true,
+          .calc_value = calc_value,
+          .calc_residuals = calc_residuals};
+}
+
 // Returns the row of a function of BBOB: one of the sums above over the z of bbob.hpp.
 AnalyticFunction make_bbob_row(int number, const std::string& summary, double (*calc_value)(Point),
                                std::vector<double> (*calc_residuals)(Point)) {
@@ -185,6 +206,12 @@ const std::vector<AnalyticFunction>& analytic_table() {
        .constraint_count = 3,
        .calc_value = calc_rosen_suzuki,
        .calc_constraints = calc_rosen_suzuki_constraints},
+      make_mixed_row("sphere-int", "Sum of squares; the second half of the variables are integers",
+                     "SphereInt", calc_sphere, calc_sphere_residuals),
+      make_mixed_row("ellipsoid-int",
+                     "Separable quadratic of condition number 1e6; the second half of the "
+                     "variables are integers",
+                     "EllipsoidInt", calc_ellipsoid, calc_ellipsoid_residuals),
       make_bbob_row(1, "Sphere", calc_sphere, calc_sphere_residuals),
       make_bbob_row(2, "Separable ellipsoid with oscillation, condition number 1e6", calc_ellipsoid,
                     calc_ellipsoid_residuals),

@@ -85,8 +85,10 @@ FunctionInstance make_plain_instance(const AnalyticFunction& function, std::size
   FunctionInstance instance;
   const bool is_shifted = function.minimiser.empty();
   std::vector<double> shift(dimension);
+  const std::size_t first_integer = dimension - count_integers(function, dimension);
   for (std::size_t i = 0; i < dimension && is_shifted; ++i) {
-    shift[i] = calc_plain_shift(i);
+    const double s = calc_plain_shift(i);
+    shift[i] = i < first_integer ? s : std::copysign(std::ceil(std::abs(s)), s);
   }
   instance.minimiser = is_shifted ? shift : function.minimiser;
   instance.calc_z = [shift = std::move(shift)](std::span<const double> x, std::span<double> z) {
@@ -100,8 +102,10 @@ FunctionInstance make_random_instance(const AnalyticFunction& function, std::siz
   RandomStream random(fmt::format("function/{}/{}", function.name, dimension),
                       static_cast<std::uint64_t>(number));
   FunctionInstance instance;
+  const std::size_t first_integer = dimension - count_integers(function, dimension);
   for (std::size_t i = 0; i < dimension; ++i) {
-    instance.minimiser.push_back(random.uniform(-kLargestShift, kLargestShift));
+    const double s = random.uniform(-kLargestShift, kLargestShift);
+    instance.minimiser.push_back(i < first_integer ? s : std::floor(s + 0.5));
   }
   if (function.is_rotated) {
     instance.calc_z = [shift = instance.minimiser, rotation = Rotation(dimension, random)](

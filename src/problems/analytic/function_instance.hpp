@@ -18,11 +18,11 @@ struct FunctionInstance {
   double f_opt = 0;               // is added to the value
 };
 
-// Returns the plain form: z = x - s.
+// Returns the plain form: z = x - s (analytic.hpp).
 FunctionInstance make_plain_instance(const AnalyticFunction& function, std::size_t dimension);
 
 // Returns instance `number` >= 1 of one of our own functions: z = Q (x - s) with s uniform in
-// [-4, 4]^n. Q is a random orthogonal matrix, and the identity if the function is not rotated. s
+// [-4, 4]^n, rounded for integer variables. Q is a random orthogonal matrix, and the identity if the function is not rotated. s
 // and Q have the same bits on every machine. Cost of one z: 2 n^2 multiplications if rotated.
 FunctionInstance make_random_instance(const AnalyticFunction& function, std::size_t dimension,
                                       int number);

@@ -83,8 +83,8 @@ const Setting<int> kFunctionDimension{
     {.lower = static_cast<double>(AnalyticFunction{}.smallest_dimension),
      .upper = static_cast<double>(AnalyticFunction{}.largest_dimension)},
     AnalyticFunction{}.default_dimension,
-    "for the kind analytic: number of variables (rosenbrock: at least 2; constrained: 4; bbob-f1 "
-    "to bbob-f15: 2 to 40)"};
+    "for the kind analytic: number of variables (rosenbrock, sphere-int and ellipsoid-int: at "
+    "least 2; constrained: 4; bbob-f1 to bbob-f15: 2 to 40)"};
 const Setting<int> kFunctionInstance{
     "instance",
     {.lower = 0, .upper = kMostInstances},

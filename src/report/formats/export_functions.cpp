@@ -11,17 +11,18 @@ namespace armwright {
 namespace {
 
 // The problem `robot` is missing: without a robot of the user's it is no function.
-constexpr std::array<std::pair<std::string_view, std::size_t>, 40> kFunctions = {{
-    {"sphere", 25},          {"ellipsoid", 26},    {"rosenbrock", 27},   {"rastrigin", 28},
-    {"constrained", 29},     {"bbob-f1", 30},      {"bbob-f2", 31},      {"bbob-f3", 32},
-    {"bbob-f8", 33},         {"bbob-f10", 34},     {"bbob-f15", 35},     {"q1-complex", 40},
-    {"q1-ramp", 41},         {"q1-step", 42},      {"q1-trapezoid", 43}, {"q1-triangular", 44},
-    {"q1-requirements", 45}, {"q2-e1", 46},        {"q2-e2", 47},        {"q2-e3", 48},
-    {"q2-e4", 49},           {"q2-e5", 50},        {"q2-e6", 51},        {"q2-energy", 52},
-    {"q2-error", 53},        {"q2-torque", 54},    {"q2-pareto", 55},    {"q3-load", 56},
-    {"q4-speed", 57},        {"faithful-q1", 58},  {"faithful-e6", 59},  {"faithful-q3", 60},
-    {"robust-q1", 61},       {"robust-e6", 62},    {"robust-q3", 63},    {"initial", 64},
-    {"initial-0cm", 65},     {"initial-45cm", 66}, {"initial-90cm", 67}, {"co-design", 68},
+constexpr std::array<std::pair<std::string_view, std::size_t>, 42> kFunctions = {{
+    {"sphere", 25},          {"ellipsoid", 26},     {"rosenbrock", 27},   {"rastrigin", 28},
+    {"constrained", 29},     {"bbob-f1", 30},       {"bbob-f2", 31},      {"bbob-f3", 32},
+    {"bbob-f8", 33},         {"bbob-f10", 34},      {"bbob-f15", 35},     {"q1-complex", 40},
+    {"q1-ramp", 41},         {"q1-step", 42},       {"q1-trapezoid", 43}, {"q1-triangular", 44},
+    {"q1-requirements", 45}, {"q2-e1", 46},         {"q2-e2", 47},        {"q2-e3", 48},
+    {"q2-e4", 49},           {"q2-e5", 50},         {"q2-e6", 51},        {"q2-energy", 52},
+    {"q2-error", 53},        {"q2-torque", 54},     {"q2-pareto", 55},    {"q3-load", 56},
+    {"q4-speed", 57},        {"faithful-q1", 58},   {"faithful-e6", 59},  {"faithful-q3", 60},
+    {"robust-q1", 61},       {"robust-e6", 62},     {"robust-q3", 63},    {"initial", 64},
+    {"initial-0cm", 65},     {"initial-45cm", 66},  {"initial-90cm", 67}, {"co-design", 68},
+    {"sphere-int", 36},      {"ellipsoid-int", 37},
 }};
 
 bool is_shipped(const RecordedFunction& function) {

@@ -32,11 +32,12 @@ std::vector<double> shifted(const Problem& problem, double by) {
 TEST(Analytic, NamesAndDimensionsAreChecked) {
   EXPECT_THAT(analytic_names(),
               ElementsAre("sphere", "ellipsoid", "rosenbrock", "rastrigin", "constrained",
-                          "bbob-f1", "bbob-f2", "bbob-f3", "bbob-f8", "bbob-f10", "bbob-f15"));
+                          "sphere-int", "ellipsoid-int", "bbob-f1", "bbob-f2", "bbob-f3", "bbob-f8",
+                          "bbob-f10", "bbob-f15"));
   EXPECT_EQ(usage_error_of([] { make_analytic("spere", 3); }),
             "unknown analytic function 'spere'; did you mean 'sphere'? Valid: sphere, ellipsoid, "
-            "rosenbrock, rastrigin, constrained, bbob-f1, bbob-f2, bbob-f3, bbob-f8, bbob-f10, "
-            "bbob-f15");
+            "rosenbrock, rastrigin, constrained, sphere-int, ellipsoid-int, bbob-f1, bbob-f2, "
+            "bbob-f3, bbob-f8, bbob-f10, bbob-f15");
   EXPECT_EQ(usage_error_of([] { make_analytic("sphere", 0); }),
             "analytic function 'sphere': dimension is 0; it must be between 1 and 1000");
   EXPECT_EQ(usage_error_of([] { make_analytic("rosenbrock", 1); }),
@@ -75,6 +76,46 @@ TEST(Analytic, OneDimensionIsEnough) {
   EXPECT_NEAR(
       calc_value(*make_analytic("ellipsoid", 1), shifted(*make_analytic("ellipsoid", 1), 2)), 4,
       1e-14);
+}
+
+// The formulas of the paper over z = x - minimiser, in five variables: three real, two integers.
+TEST(Analytic, FunctionsWithIntegersAreThoseOfThePaper) {
+  const std::vector<double> z = {0.5, -1, 0.25, 2, -1};
+  for (const std::string name : {"sphere-int", "ellipsoid-int"}) {
+    const auto problem = make_analytic(name, 5);
+    std::vector<double> x = problem->description().known_optimum;
+    double expected = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] += z[i];
+      const double factor = std::pow(1000, static_cast<double>(i) / 4);
+      expected += std::pow(name == "sphere-int" ? z[i] : factor * z[i], 2);
+    }
+    // A few roundings of x, at most 1e-15 each, times the slope, and of the sum.
+    EXPECT_NEAR(calc_value(*problem, x), expected, 1e-13 * expected) << name;
+  }
+}
+
+TEST(Analytic, TheSecondHalfOfTheVariablesAreIntegersWithAWholeMinimiser) {
+  for (const std::string name : {"sphere-int", "ellipsoid-int"}) {
+    for (const int dimension : {2, 3, 40, 41}) {
+      for (int instance = 0; instance <= 20; ++instance) {
+        const auto problem =
+            make_analytic({.name = name, .dimension = dimension, .instance = instance});
+        const ProblemDescription& description = problem->description();
+        for (int i = 0; i < dimension; ++i) {
+          const DecisionVariable& variable = description.variables[i];
+          const double optimum = description.known_optimum[i];
+          const bool is_integer = i >= (dimension + 1) / 2;
+          EXPECT_EQ(variable.type, is_integer ? VariableType::integer : VariableType::real);
+          EXPECT_EQ(variable.lower, -10);
+          EXPECT_EQ(variable.upper, 10);
+          EXPECT_EQ(optimum == std::round(optimum), is_integer) << variable.name;
+          EXPECT_TRUE(instance > 0 || optimum != 0) << "the plain form is off the center";
+        }
+        EXPECT_EQ(calc_value(*problem, description.known_optimum), 0);
+      }
+    }
+  }
 }
 
 class AnalyticTable : public testing::TestWithParam<std::string> {};

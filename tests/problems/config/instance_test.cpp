@@ -50,8 +50,9 @@ TEST(Instances, ThePlainFormIsRecordedAsVersion1Did) {
 }
 
 TEST(Instances, ShippedFunctionsHaveAnotherInstancePerReplicate) {
-  for (const std::string name : {"sphere", "ellipsoid", "rosenbrock", "rastrigin", "bbob-f1",
-                                 "bbob-f2", "bbob-f3", "bbob-f8", "bbob-f10", "bbob-f15"}) {
+  for (const std::string name :
+       {"sphere", "ellipsoid", "rosenbrock", "rastrigin", "sphere-int", "ellipsoid-int", "bbob-f1",
+        "bbob-f2", "bbob-f3", "bbob-f8", "bbob-f10", "bbob-f15"}) {
     SCOPED_TRACE(name);
     const LoadedProblem loaded = load_problem(name);
     EXPECT_EQ(loaded.function->instance, 1);
