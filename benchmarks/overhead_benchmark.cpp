@@ -150,8 +150,8 @@ void bare_loop(benchmark::State& state) {
   watch.report(state, state.iterations() * kBatch);
 }
 
-void batches(benchmark::State& state) {
-  const RunPlan plan = make_plan("random", {}, std::numeric_limits<std::int64_t>::max());
+// Measures the problem of `plan` in batches on state.range(0) threads.
+void run_batches(benchmark::State& state, const RunPlan& plan) {
   Run run(plan, static_cast<unsigned>(state.range(0)));
   const auto points = draw_points(run.evaluator.problem(), 100 * kBatch);
   std::size_t next = 0;
@@ -164,6 +164,18 @@ void batches(benchmark::State& state) {
   run.journal.flush();
   watch.stop();
   watch.report(state, run.evaluator.counts().evaluations);
+}
+
+void batches(benchmark::State& state) {
+  run_batches(state, make_plan("random", {}, std::numeric_limits<std::int64_t>::max()));
+}
+
+// The same function as a problem in a shared library, whose process gets one message per batch.
+void library_batches(benchmark::State& state) {
+  RunPlan plan = make_plan("random", {}, std::numeric_limits<std::int64_t>::max());
+  plan.problem = load_problem(ARMWRIGHT_OVERHEAD_LIBRARY);
+  plan.schedule = plan.problem.schedule;
+  run_batches(state, plan);
 }
 
 #ifdef ARMWRIGHT_WITH_NLOPT
@@ -258,6 +270,7 @@ double calc_min(const std::vector<double>& values) {
 
 ARMWRIGHT_OVERHEAD(bare_loop);
 ARMWRIGHT_OVERHEAD(batches)->ArgName("threads")->Arg(1)->Arg(2);
+ARMWRIGHT_OVERHEAD(library_batches)->ArgName("threads")->Arg(1)->Arg(2);
 #ifdef ARMWRIGHT_WITH_NLOPT
 ARMWRIGHT_OVERHEAD(bare_nelder_mead);
 ARMWRIGHT_OVERHEAD(nelder_mead)->ArgName("threads")->Arg(1)->Arg(2);

@@ -9,6 +9,7 @@
 #include "base/hash.hpp"
 #include "base/text.hpp"
 #include "problems/config/problem_readers.hpp"
+#include "problems/user/library_server.hpp"
 #include "problems/user/program_server.hpp"
 #include "problems/user/user_problem.hpp"
 #include "process/command_words.hpp"
@@ -22,19 +23,19 @@ constexpr std::size_t kProgramLimit_bytes = std::size_t{1} << 30;
 const Setting<std::string> kProgramCommand{
     "command", kNoDefault,
     "for the kind program: what computes it; exec:COMMAND is a program that answers questions in "
-    "JSON lines"};
+    "JSON lines, ./NAME.so a shared library"};
 const Setting<double> kProgramTimeLimit{
     "time_limit_s",
     {.lower = 0, .upper = 1e7, .lower_open = true},
     ServerLimits{}.time_limit_s,
     "for the kind program: longest time for one case; a case that takes longer is a failed case, "
     "and the program is started again"};
-const Setting<double> kProgramMemory{
-    "memory_mib",
-    {.lower = 1, .upper = 1e7},
-    ServerLimits{}.memory_mib,
-    "for the kind program: how much the memory of one of its processes may grow; beyond it the case "
-    "is a failed case"};
+const Setting<double> kProgramMemory{"memory_mib",
+                                     {.lower = 1, .upper = 1e7},
+                                     ServerLimits{}.memory_mib,
+                                     "for the kind program: how much the memory of one of its "
+                                     "processes may grow; beyond it the case "
+                                     "is a failed case"};
 const Setting<std::string> kProgramDescription{
     "description", "",
     "for the kind program: its description of itself as JSON, which armwright records; with it, "
@@ -45,7 +46,24 @@ UserProgram make_program(const std::string& command, const ServerLimits& limits,
   if (command.starts_with(kExec)) {
     return make_program_problem(std::string_view(command).substr(kExec.size()), limits, recorded);
   }
-  table.refuse(kProgramCommand, "it must begin with exec:, as in \"exec:python3 motor.py\"");
+  // A recorded problem is read without its library, which may be gone.
+  if (is_problem_library(command) || (!recorded.empty() && command.find('/') != command.npos)) {
+    return make_library_problem(command, limits, recorded);
+  }
+  table.refuse(kProgramCommand,
+               "it must begin with exec:, as in \"exec:python3 motor.py\", or be the path of a "
+               "shared library, as in \"./libmotor.so\"");
+}
+
+// Returns the files that decide what a program computes: the words of a command that are files, or a
+// library that exists.
+std::vector<std::string> list_files(const std::string& command) {
+  if (command.starts_with(kExec)) {
+    return list_program_files(std::string_view(command).substr(kExec.size()));
+  }
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(command, ignored) ? std::vector{command}
+                                                            : std::vector<std::string>{};
 }
 
 }  // namespace
@@ -55,7 +73,7 @@ const SettingTable kProgramSettings{
     .settings = {&kProgramCommand, &kProgramTimeLimit, &kProgramMemory, &kProgramDescription}};
 
 bool is_program_name(std::string_view name) {
-  return name.starts_with(kExec);
+  return name.starts_with(kExec) || is_problem_library(name);
 }
 
 void load_program(const ConfigTable& table, LoadedProblem& loaded) {
@@ -71,7 +89,7 @@ void load_program(const ConfigTable& table, LoadedProblem& loaded) {
   loaded.sets.training_cases = made.description.training_cases;
   loaded.sets.validation_cases = static_cast<int>(made.description.validation_cases);
   loaded.sets.test_cases = static_cast<int>(made.description.test_cases);
-  for (const std::string& file : list_program_files(command.substr(kExec.size()))) {
+  for (const std::string& file : list_files(command)) {
     loaded.input_hashes[file] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));
   }
   loaded.problem = make_user_problem(std::move(made));

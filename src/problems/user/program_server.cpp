@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/user/case_messages.hpp"
 #include "process/command_words.hpp"
@@ -21,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kLoading_s = 60;   // until the description arrives; interpreters load slowly
+constexpr double kLoading_s = 60;    // until the description arrives; interpreters load slowly
 constexpr double kProgramEnd_s = 1;  // until a program that was told to quit has ended
 
 std::string make_hello_line() {
@@ -50,15 +49,7 @@ class ProgramServer final : public CaseServer {
                 const UserDescription& recorded)
       : name_(std::move(name)), limits_(limits), child_(words, log_) {
     description_ = ask_description(child_, log_, name_);
-    const std::string before = to_json(recorded);
-    const std::string now = to_json(description_);
-    if (before != now) {
-      throw Error(ErrorKind::bad_data,
-                  fmt::format("problem '{}': it describes itself differently from before:\n  {}\n"
-                              "Start a new run or study with the changed problem, or use the "
-                              "problem as it was",
-                              sanitize(name_), join(describe_differences(before, now), "\n  ")));
-    }
+    check_same_description(name_, recorded, description_);
     child_.limit_memory(limits_.memory_mib);
   }
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "process/json_message.hpp"
 
@@ -177,9 +178,8 @@ void check_variable(const DecisionVariable& variable, const std::string& field,
                     const RefuseField& refuse) {
   if (variable.type == VariableType::category) {
     if (variable.choices.size() < 2) {
-      refuse(field + ".choices",
-             fmt::format("has {}; a category needs two words or more",
-                         variable.choices.empty() ? "no word" : "one word"));
+      refuse(field + ".choices", fmt::format("has {}; a category needs two words or more",
+                                             variable.choices.empty() ? "no word" : "one word"));
     }
     const std::set<std::string> different(variable.choices.begin(), variable.choices.end());
     if (different.size() < variable.choices.size() || different.contains("")) {
@@ -191,9 +191,8 @@ void check_variable(const DecisionVariable& variable, const std::string& field,
     return variable.type == VariableType::real ||
            (value == std::floor(value) && std::abs(value) <= 9007199254740992);  // 2^53
   };
-  for (const auto& [key, value] : {std::pair{"lower", variable.lower},
-                                   {"upper", variable.upper},
-                                   {"start", variable.start}}) {
+  for (const auto& [key, value] :
+       {std::pair{"lower", variable.lower}, {"upper", variable.upper}, {"start", variable.start}}) {
     if (!is_possible(value)) {
       refuse(fmt::format("{}.{}", field, key),
              fmt::format("is {}; an integer's {} must be a whole number of at most 2^53",
@@ -201,9 +200,9 @@ void check_variable(const DecisionVariable& variable, const std::string& field,
     }
   }
   if (variable.lower >= variable.upper) {
-    refuse(field + ".lower", fmt::format("is {}; it must be less than upper, which is {}",
-                                         format_exact(variable.lower),
-                                         format_exact(variable.upper)));
+    refuse(field + ".lower",
+           fmt::format("is {}; it must be less than upper, which is {}",
+                       format_exact(variable.lower), format_exact(variable.upper)));
   }
   if (variable.scale == Scale::logarithmic && variable.lower <= 0 && variable.upper >= 0) {
     refuse(field + ".scale",
@@ -212,10 +211,9 @@ void check_variable(const DecisionVariable& variable, const std::string& field,
                        format_exact(variable.lower), format_exact(variable.upper)));
   }
   if (variable.start < variable.lower || variable.start > variable.upper) {
-    refuse(field + ".start",
-           fmt::format("is {}; it must lie within the bounds {} to {}",
-                       format_exact(variable.start), format_exact(variable.lower),
-                       format_exact(variable.upper)));
+    refuse(field + ".start", fmt::format("is {}; it must lie within the bounds {} to {}",
+                                         format_exact(variable.start), format_exact(variable.lower),
+                                         format_exact(variable.upper)));
   }
 }
 
@@ -252,9 +250,9 @@ void check_description(const UserDescription& description, const RefuseField& re
     if (objective.penalty && objective.bound &&
         (objective.is_maximised ? *objective.penalty > *objective.bound
                                 : *objective.penalty < *objective.bound)) {
-      refuse(field + ".penalty", fmt::format("is {}, better than the bound {}",
-                                             format_exact(*objective.penalty),
-                                             format_exact(*objective.bound)));
+      refuse(field + ".penalty",
+             fmt::format("is {}, better than the bound {}", format_exact(*objective.penalty),
+                         format_exact(*objective.bound)));
     }
     if (objective.penalty.has_value() != description.objectives.front().penalty.has_value()) {
       refuse(field + ".penalty", "is given for some objectives; give it for all or none");
@@ -275,8 +273,9 @@ void check_description(const UserDescription& description, const RefuseField& re
   if (description.has_residuals &&
       (description.objectives.size() != 1 || description.objectives[0].is_maximised ||
        description.takes_worst_case)) {
-    refuse("residuals", "is true; that needs one objective, which is minimised and the sum of the "
-                        "squared residuals, and the mean over the cases");
+    refuse("residuals",
+           "is true; that needs one objective, which is minimised and the sum of the "
+           "squared residuals, and the mean over the cases");
   }
   if (description.validation_cases < 1 || description.test_cases < 1) {
     refuse("cases", "has no validation or test cases; give at least one of each");
@@ -290,15 +289,14 @@ UserDescription read_user_description(const json& message) {
   }
   const FieldReader fields(message, "a description");
   if (fields.number("protocol") != kProblemProtocol) {
-    fields.refuse("protocol", fmt::format("{}, the version that this armwright speaks",
-                                          kProblemProtocol));
+    fields.refuse("protocol",
+                  fmt::format("{}, the version that this armwright speaks", kProblemProtocol));
   }
   UserDescription description;
   description.name = fields.name();
   description.summary = fields.text("summary", "");
-  fields.each("variables", kMostVariables, [&](const FieldReader& one) {
-    description.variables.push_back(read_variable(one));
-  });
+  fields.each("variables", kMostVariables,
+              [&](const FieldReader& one) { description.variables.push_back(read_variable(one)); });
   fields.each("objectives", kMostOutputs, [&](const FieldReader& one) {
     const std::array<std::string, 2> directions = {"minimize", "maximize"};
     description.objectives.push_back({.quantity = read_quantity(one),
@@ -310,9 +308,8 @@ UserDescription read_user_description(const json& message) {
   fields.each("constraints", kMostOutputs, [&](const FieldReader& one) {
     description.constraints.push_back({read_quantity(one), one.find_number("limit")});
   });
-  fields.each("metrics", kMostOutputs, [&](const FieldReader& one) {
-    description.metrics.push_back(read_quantity(one));
-  });
+  fields.each("metrics", kMostOutputs,
+              [&](const FieldReader& one) { description.metrics.push_back(read_quantity(one)); });
   description.has_residuals = fields.flag("residuals", false);
   if (fields.has("cases")) {
     const FieldReader cases(fields.get("cases"), "cases");
@@ -385,6 +382,19 @@ UserDescription read_recorded_description(const std::string& recorded, std::stri
                 fmt::format("the recorded description of the problem '{}' is not what armwright "
                             "wrote: it {}",
                             sanitize(name), error.what()));
+  }
+}
+
+void check_same_description(std::string_view name, const UserDescription& recorded,
+                            const UserDescription& now) {
+  const std::string before = to_json(recorded);
+  const std::string after = to_json(now);
+  if (before != after) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("problem '{}': it describes itself differently from before:\n  {}\n"
+                            "Start a new run or study with the changed problem, or use the "
+                            "problem as it was",
+                            sanitize(name), join(describe_differences(before, after), "\n  ")));
   }
 }
 
