@@ -18,6 +18,7 @@ namespace armwright {
 namespace {
 
 constexpr std::string_view kExec = "exec:";
+constexpr std::string_view kHost = "host:";
 constexpr std::size_t kProgramLimit_bytes = std::size_t{1} << 30;
 
 const Setting<std::string> kProgramCommand{
@@ -41,10 +42,28 @@ const Setting<std::string> kProgramDescription{
     "for the kind program: its description of itself as JSON, which armwright records; with it, "
     "the problem is read without starting the program"};
 
+// Returns the problem of a program that uses armwright as a library (armwright/run.h). Only that
+// program can compute it.
+UserProgram make_host_problem(const std::string& name, const std::string& recorded) {
+  UserProgram made;
+  made.name = name;
+  made.why_not =
+      "it is computed by the program that uses armwright as a library and began the run, and only "
+      "that program can continue it: start it again (armwright/run.h)";
+  if (recorded.empty()) {
+    throw Error(ErrorKind::usage, fmt::format("problem '{}': {}", sanitize(name), made.why_not));
+  }
+  made.description = read_recorded_description(recorded, name);
+  return made;
+}
+
 UserProgram make_program(const std::string& command, const ServerLimits& limits,
                          const std::string& recorded, const ConfigTable& table) {
   if (command.starts_with(kExec)) {
     return make_program_problem(std::string_view(command).substr(kExec.size()), limits, recorded);
+  }
+  if (command.starts_with(kHost)) {
+    return make_host_problem(command, recorded);
   }
   // A recorded problem is read without its library, which may be gone.
   if (is_problem_library(command) || (!recorded.empty() && command.find('/') != command.npos)) {
@@ -62,8 +81,9 @@ std::vector<std::string> list_files(const std::string& command) {
     return list_program_files(std::string_view(command).substr(kExec.size()));
   }
   std::error_code ignored;
-  return std::filesystem::is_regular_file(command, ignored) ? std::vector{command}
-                                                            : std::vector<std::string>{};
+  return !command.starts_with(kHost) && std::filesystem::is_regular_file(command, ignored)
+             ? std::vector{command}
+             : std::vector<std::string>{};
 }
 
 }  // namespace
@@ -73,7 +93,7 @@ const SettingTable kProgramSettings{
     .settings = {&kProgramCommand, &kProgramTimeLimit, &kProgramMemory, &kProgramDescription}};
 
 bool is_program_name(std::string_view name) {
-  return name.starts_with(kExec) || is_problem_library(name);
+  return name.starts_with(kExec) || name.starts_with(kHost) || is_problem_library(name);
 }
 
 void load_program(const ConfigTable& table, LoadedProblem& loaded) {
