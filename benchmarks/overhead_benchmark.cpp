@@ -157,6 +157,7 @@ void bare_loop(benchmark::State& state) {
   watch.report(state, state.iterations() * kBatch);
 }
 
+// Measures a problem in batches on state.range(0) threads.
 void measure_batches(benchmark::State& state, const std::string& problem) {
   const RunPlan plan = make_plan("random", {}, std::numeric_limits<std::int64_t>::max(), problem);
   Run run(plan, static_cast<unsigned>(state.range(0)));
@@ -175,6 +176,11 @@ void measure_batches(benchmark::State& state, const std::string& problem) {
 
 void batches(benchmark::State& state) {
   measure_batches(state, "sphere");
+}
+
+// The same function as a problem in a shared library, whose process gets one message per batch.
+void batches_of_library(benchmark::State& state) {
+  measure_batches(state, ARMWRIGHT_OVERHEAD_LIBRARY);
 }
 
 void batches_of_program(benchmark::State& state) {
@@ -289,6 +295,7 @@ double calc_min(const std::vector<double>& values) {
 
 ARMWRIGHT_OVERHEAD(bare_loop);
 ARMWRIGHT_OVERHEAD(batches)->ArgName("threads")->Arg(1)->Arg(2);
+ARMWRIGHT_OVERHEAD(batches_of_library)->ArgName("threads")->Arg(1)->Arg(2);
 ARMWRIGHT_OVERHEAD(batches_of_program)->ArgName("threads")->Arg(1)->Arg(2);
 BENCHMARK(bare_exchange_in_python)
     ->UseManualTime()

@@ -21,6 +21,9 @@ install(DIRECTORY configs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/config
 # Example plugins to read and to build. The program looks for built plugins in lib/armwright/plugins.
 install(DIRECTORY plugins/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/plugins COMPONENT runtime USE_SOURCE_PERMISSIONS
         PATTERN "__pycache__" EXCLUDE)
+# Example programs that use armwright as a library.
+install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/examples COMPONENT runtime USE_SOURCE_PERMISSIONS
+        PATTERN "__pycache__" EXCLUDE)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime OPTIONAL)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
@@ -39,6 +42,12 @@ install(EXPORT armwrightTargets NAMESPACE armwright:: DESTINATION ${ARMWRIGHT_CM
 install(TARGETS armwright_plugin EXPORT armwrightPluginTargets)
 install(DIRECTORY include/armwright DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
 install(EXPORT armwrightPluginTargets NAMESPACE armwright:: DESTINATION ${ARMWRIGHT_CMAKE_DIR} COMPONENT dev)
+
+# The shared library for programs of the user's own, which needs no headers or packages of armwright's libraries either. A built program
+# needs only the file in the component runtime.
+install(TARGETS armwright_shared EXPORT armwrightRunTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime
+                                                                    NAMELINK_COMPONENT dev)
+install(EXPORT armwrightRunTargets NAMESPACE armwright:: DESTINATION ${ARMWRIGHT_CMAKE_DIR} COMPONENT dev)
 
 configure_package_config_file(cmake/armwrightConfig.cmake.in ${PROJECT_BINARY_DIR}/armwrightConfig.cmake
                               INSTALL_DESTINATION ${ARMWRIGHT_CMAKE_DIR})

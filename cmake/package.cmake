@@ -20,6 +20,7 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON) # of libarmwright, for packages of programs that use it
 set(this_version "= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}")
 
 # The dependencies on libraries follow from the program itself. The other programs that it calls (mpirun, a compiler for plugins) are optional.
@@ -97,7 +98,7 @@ set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_BINARY_DIR}/package_finish.cmake)
 include(CPack)
 
 # The target builds only what the packages contain: neither tests nor benchmarks.
-set(packed armwright)
+set(packed armwright armwright_shared)
 foreach(target IN ITEMS _armwright site) # only the targets that this build has
   if(TARGET ${target})
     list(APPEND packed ${target})

@@ -55,7 +55,7 @@ def check_contents(name, files, wanted):
         expect(path.startswith("/usr/") or path in ("/", "/usr/"), f"{name} has {path}, which is not below /usr")
         expect(owner == "root/root", f"{name}: {path} belongs to {owner}")
         is_program = path.startswith("/usr/bin/") and path != "/usr/bin/" or path.endswith((".sh", ".py"))
-        allowed = ["drwxr-xr-x"] if mode[0] == "d" else ["-rwxr-xr-x"] if path == "/usr/bin/armwright" else ["-rw-r--r--"]
+        allowed = ["drwxr-xr-x"] if mode[0] == "d" else ["lrwxrwxrwx"] if re.search(r"/libarmwright\.so(\.\d+)?$", path) else ["-rwxr-xr-x"] if path == "/usr/bin/armwright" else ["-rw-r--r--"]
         if is_program:
             allowed.append("-rwxr-xr-x")
         expect(mode in allowed, f"{name}: {path} has the mode {mode} instead of {allowed[0]}")
@@ -70,8 +70,8 @@ def check_fields(name, package, wanted):
         expect(re.search(pattern, fields.get(field, "")), f"{name}: {field} is {fields.get(field)!r}, without {pattern!r}")
     control = run("dpkg-deb", "--info", package)
     expect("md5sums" in control, f"{name} has no md5sums")
-    # Python compiles what is imported, beside it.
-    wanted_scripts = {"postinst", "prerm"} if name == "python3-armwright" else set()
+    # The loader must know libarmwright. Python compiles what is imported, beside it.
+    wanted_scripts = {"armwright": {"postinst", "postrm"}, "python3-armwright": {"postinst", "prerm"}}.get(name, set())
     scripts = {script for script in ["preinst", "postinst", "prerm", "postrm"] if re.search(rf"\b{script}\b", control)}
     expect(scripts == wanted_scripts, f"{name} has the maintainer scripts {sorted(scripts)} instead of {sorted(wanted_scripts)}")
 
@@ -80,6 +80,9 @@ def check_program(package, sources):
     root = os.path.join(WORK_DIR, "root")
     run("dpkg-deb", "--extract", package, root)
     program = root + "/usr/bin/armwright"
+    expect("ldconfig" in run("dpkg-deb", "--info", package, "postinst"), "the loader is not told of libarmwright")
+    library = root + f"/usr/lib/libarmwright.so.{VERSION}"
+    expect(".debug_info" not in run("readelf", "--section-headers", library), "libarmwright is not stripped")
     environment = {name: value for name, value in os.environ.items() if not name.startswith("ARMWRIGHT")}
     expect(run(program, "--version").startswith(f"armwright {VERSION}\n"), "the program has another version")
     expect(".debug_info" not in run("readelf", "--section-headers", program), "the program is not stripped")
@@ -106,12 +109,15 @@ def main():
     check_contents("armwright", files["armwright"], [
         "/usr/bin/armwright", "/usr/share/armwright/configs/problems/q1-complex.toml", "/usr/share/doc/armwright/README.md",
         "/usr/share/man/man1/armwright.1.gz", "/usr/share/man/man1/armwright-testset-export.1.gz",
-        "/usr/share/bash-completion/completions/armwright", "/usr/share/armwright/plugins/scipy_de/scipy_de.py"])
+        "/usr/share/bash-completion/completions/armwright", "/usr/share/armwright/plugins/scipy_de/scipy_de.py",
+        f"/usr/lib/libarmwright.so.{VERSION}", f"/usr/lib/libarmwright.so.{VERSION.split('.')[0]}",
+        "/usr/share/armwright/examples/own_program/own_program.cpp"])
     check_fields("armwright", packages["armwright"], {
         "Depends": r"libc6 \(>= .*libode8.*libsqlite3-0", "Section": "science", "Priority": "optional",
         "Description": r"(?s)^tunes .*\n .*physics engine", "Maintainer": "armwright developers <.*@.*>", "Suggests": "python3-scipy"})
     check_contents("armwright-dev", files["armwright-dev"], [
-        "/usr/include/armwright/plugin.h", "/usr/include/armwright/base/error.hpp", "/usr/lib/libarmwright_base.a",
+        "/usr/include/armwright/plugin.h", "/usr/include/armwright/problem.hpp", "/usr/include/armwright/run.h",
+        "/usr/lib/libarmwright.so", "/usr/include/armwright/base/error.hpp", "/usr/lib/libarmwright_base.a",
         "/usr/lib/cmake/armwright/armwrightConfig.cmake"])
     check_fields("armwright-dev", packages["armwright-dev"], {
         "Depends": rf"armwright \(= {FULL_VERSION}\).*libeigen3-dev", "Section": "libdevel"})

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "armwright/problem.h"
 #include "base/text.hpp"
 #include "optimizers/interface/optimizer.hpp"
 
@@ -130,6 +131,9 @@ const struct armwright_plugin& open_plugin(const std::filesystem::path& file) {
     throw PluginRefusal(fmt::format("is no shared library that can be opened: {}", dlerror()));
   }
   void* const symbol = dlsym(library, ARMWRIGHT_PLUGIN_SYMBOL);
+  if (symbol == nullptr && dlsym(library, ARMWRIGHT_PROBLEM_SYMBOL) != nullptr) {
+    throw PluginRefusal("is a problem and no optimizer; name it as the problem");
+  }
   if (symbol == nullptr) {
     throw PluginRefusal(
         fmt::format("exports no function '{0}'; a plugin defines ARMWRIGHT_PLUGIN_EXPORT const "

@@ -9,6 +9,7 @@
 #include "base/hash.hpp"
 #include "base/text.hpp"
 #include "problems/config/problem_readers.hpp"
+#include "problems/user/library_server.hpp"
 #include "problems/user/program_server.hpp"
 #include "problems/user/user_problem.hpp"
 #include "process/command_words.hpp"
@@ -17,12 +18,14 @@ namespace armwright {
 namespace {
 
 constexpr std::string_view kExec = "exec:";
+constexpr std::string_view kHost = "host:";
+constexpr std::string_view kPython = "python:";
 constexpr std::size_t kProgramLimit_bytes = std::size_t{1} << 30;
 
 const Setting<std::string> kProgramCommand{
     "command", kNoDefault,
     "for the kind program: what computes it; exec:COMMAND is a program that answers questions in "
-    "JSON lines"};
+    "JSON lines, ./NAME.so a shared library"};
 const Setting<double> kProgramTimeLimit{
     "time_limit_s",
     {.lower = 0, .upper = 1e7, .lower_open = true},
@@ -40,7 +43,17 @@ const Setting<std::string> kProgramDescription{
     "for the kind program: its description of itself as JSON, which armwright records; with it, "
     "the problem is read without starting the program"};
 
-constexpr std::string_view kPython = "python:";
+// Returns what to do with a problem that a host program computes; empty for other problems.
+std::string explain_host_problem(std::string_view command) {
+  if (command.starts_with(kPython)) {
+    return "it belongs to a program in Python; run it from there (docs/python.md). show, report and "
+           "export work without it";
+  }
+  return command.starts_with(kHost)
+             ? "it is computed by the program that uses armwright as a library and began the run, "
+               "and only that program can continue it: start it again (armwright/run.h)"
+             : "";
+}
 
 // Describes a problem by its program, or takes the recorded description, and sets how it starts.
 UserProgram make_program(const std::string& command, const ServerLimits& limits,
@@ -48,22 +61,26 @@ UserProgram make_program(const std::string& command, const ServerLimits& limits,
                          const ConfigTable& table) {
   const auto host = std::ranges::find(programs.hosts, command, &UserProgram::name);
   if (host != programs.hosts.end()) {
-    if (!recorded.empty() && recorded != to_json(host->description)) {
-      refuse_change(command, recorded, host->description);
+    if (!recorded.empty()) {
+      check_same_description(command, read_recorded_description(recorded, command),
+                             host->description);
     }
     return *host;
   }
-  if (!is_program_name(command)) {
-    table.refuse(kProgramCommand, "it must begin with exec:, as in \"exec:python3 motor.py\"");
+  UserProgram program{.name = command, .why_not = explain_host_problem(command)};
+  const bool is_host = !program.why_not.empty();
+  const bool is_exec = command.starts_with(kExec);
+  // A recorded problem is read without its library, which may be gone.
+  if (!is_host && !is_exec && !is_problem_library(command) &&
+      (recorded.empty() || command.find('/') == std::string::npos)) {
+    table.refuse(kProgramCommand,
+                 "it must begin with exec:, as in \"exec:python3 motor.py\", or be the path of a "
+                 "shared library, as in \"./libmotor.so\"");
   }
-  const bool is_python = command.starts_with(kPython);
-  UserProgram program{.name = command};
-  program.why_not =
-      "it belongs to a program in Python; run it from there (docs/python.md). show, report and "
-      "export work without it";
+  const std::string words = is_exec ? command.substr(kExec.size()) : "";
   if (!recorded.empty()) {
     program.description = read_recorded_description(recorded, command);
-  } else if (is_python) {
+  } else if (is_host) {
     throw Error(ErrorKind::usage,
                 fmt::format("problem '{}': {}", sanitize(command), program.why_not));
   } else if (!programs.may_describe) {
@@ -72,18 +89,32 @@ UserProgram make_program(const std::string& command, const ServerLimits& limits,
                             "and a record starts no program",
                             sanitize(command)));
   } else {
-    program = describe_program(std::string_view(command).substr(kExec.size()));
+    program.description = is_exec ? describe_program(words) : describe_library(command, limits);
   }
-  if (is_python) {
+  if (is_host) {
     return program;
   }
   if (!programs.may_simulate) {
     program.why_not = "this command reads what is recorded and starts no program";
+  } else if (is_exec) {
+    program.start = make_program_start(words, limits, program.description);
   } else {
-    program.start = make_program_start(std::string_view(command).substr(kExec.size()), limits,
-                                       program.description);
+    program.start = make_library_start(command, limits, program.description);
   }
   return program;
+}
+
+// Returns the files that decide what a program computes: the words of a command that are files, or a
+// library that exists.
+std::vector<std::string> list_files(const std::string& command) {
+  if (command.starts_with(kExec)) {
+    return list_program_files(std::string_view(command).substr(kExec.size()));
+  }
+  std::error_code ignored;
+  return explain_host_problem(command).empty() &&
+                 std::filesystem::is_regular_file(command, ignored)
+             ? std::vector{command}
+             : std::vector<std::string>{};
 }
 
 }  // namespace
@@ -93,7 +124,7 @@ const SettingTable kProgramSettings{
     .settings = {&kProgramCommand, &kProgramTimeLimit, &kProgramMemory, &kProgramDescription}};
 
 bool is_program_name(std::string_view name) {
-  return name.starts_with(kExec) || name.starts_with(kPython);
+  return name.starts_with(kExec) || !explain_host_problem(name).empty() || is_problem_library(name);
 }
 
 void load_program(const ConfigTable& table, const ProgramSource& programs, LoadedProblem& loaded) {
@@ -110,10 +141,8 @@ void load_program(const ConfigTable& table, const ProgramSource& programs, Loade
   loaded.sets.training_cases = made.description.training_cases;
   loaded.sets.validation_cases = static_cast<int>(made.description.validation_cases);
   loaded.sets.test_cases = static_cast<int>(made.description.test_cases);
-  if (command.starts_with(kExec)) {
-    for (const std::string& file : list_program_files(command.substr(kExec.size()))) {
-      loaded.input_hashes[file] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));
-    }
+  for (const std::string& file : list_files(command)) {
+    loaded.input_hashes[file] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));
   }
   loaded.problem = make_user_problem(std::move(made));
 }

@@ -49,9 +49,7 @@ class ProgramServer final : public CaseServer {
                 const UserDescription& recorded)
       : name_(std::move(name)), limits_(limits), child_(words, log_) {
     description_ = ask_description(child_, log_, name_);
-    if (to_json(recorded) != to_json(description_)) {
-      refuse_change(name_, to_json(recorded), description_);
-    }
+    check_same_description(name_, recorded, description_);
     child_.limit_memory(limits_.memory_mib);
   }
 

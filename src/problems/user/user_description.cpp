@@ -385,12 +385,16 @@ UserDescription read_recorded_description(const std::string& recorded, std::stri
   }
 }
 
-void refuse_change(std::string_view name, const std::string& recorded, const UserDescription& now) {
-  throw Error(
-      ErrorKind::bad_data,
-      fmt::format("problem '{}' describes itself differently from what is recorded:\n  {}\n"
-                  "Use the problem as it was, or start a new run or study (--new)",
-                  sanitize(name), join(describe_differences(recorded, to_json(now)), "\n  ")));
+void check_same_description(std::string_view name, const UserDescription& recorded,
+                            const UserDescription& now) {
+  const std::string before = to_json(recorded);
+  const std::string after = to_json(now);
+  if (before != after) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("problem '{}' describes itself differently from what is recorded:\n  {}\n"
+                            "Use the problem as it was, or start a new run or study (--new)",
+                            sanitize(name), join(describe_differences(before, after), "\n  ")));
+  }
 }
 
 double choose_start(const DecisionVariable& variable) {

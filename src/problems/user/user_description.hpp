@@ -71,9 +71,9 @@ std::string to_json(const UserDescription& description);
 // Reads a text that to_json() made. Throws Error{bad_data}, with the problem's name, for others.
 UserDescription read_recorded_description(const std::string& recorded, std::string_view name);
 
-// Throws Error{bad_data} with the differences between a recorded description and the present one.
-[[noreturn]] void refuse_change(std::string_view name, const std::string& recorded,
-                                const UserDescription& now);
+// Throws Error{bad_data}, with the differences, if a problem describes itself differently now.
+void check_same_description(std::string_view name, const UserDescription& recorded,
+                            const UserDescription& now);
 
 // Returns the middle of a variable's bounds, or the middle of their logarithms; of a type with whole
 // numbers, the nearest whole number.

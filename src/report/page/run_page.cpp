@@ -153,7 +153,9 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
   const std::string optimizer = run.configuration.at("run").at("optimizer").get<std::string>();
   const ProblemDescription description = run.describe();
   const History history = divide_history(run.journal.training);
-  PageSimulator* used = options.simulate && run.problem ? &simulator : nullptr;
+  // A page never starts a program of the user.
+  const bool can_simulate = run.problem && run.problem->program.empty();
+  PageSimulator* used = options.simulate && can_simulate ? &simulator : nullptr;
   const auto incumbents =
       thin_out(find_incumbents(description, run.journal.training, run.schedule.changes_cases()),
                kMostIncumbents);

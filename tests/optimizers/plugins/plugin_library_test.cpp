@@ -236,6 +236,8 @@ TEST_F(PluginLibrary, WhatIsNoPluginIsRefused) {
               HasSubstr("invalid ELF header"));
   EXPECT_THAT(refusal_of(plugin("no_symbol")),
               HasSubstr("exports no function 'armwright_plugin'; a plugin defines"));
+  EXPECT_THAT(refusal_of(std::string(ARMWRIGHT_TEST_LIBRARIES) + "/libmixed.so"),
+              HasSubstr("is a problem and no optimizer; name it as the problem"));
 }
 
 TEST_F(PluginLibrary, ImplausibleDescriptionsAreRefused) {
