@@ -17,7 +17,6 @@ namespace armwright {
 namespace {
 
 constexpr std::string_view kExec = "exec:";
-constexpr std::size_t kProgramLimit_bytes = std::size_t{1} << 30;
 
 const Setting<std::string> kProgramCommand{
     "command", kNoDefault,
@@ -78,7 +77,7 @@ UserProgram make_program(const std::string& command, const ServerLimits& limits,
     return program;
   }
   if (!programs.may_simulate) {
-    program.why_not = "this command reads what is recorded and starts no program";
+    program.why_not = kStartsNothing;
   } else {
     program.start = make_program_start(std::string_view(command).substr(kExec.size()), limits,
                                        program.description);
@@ -96,6 +95,13 @@ bool is_program_name(std::string_view name) {
   return name.starts_with(kExec) || name.starts_with(kPython);
 }
 
+void set_user_cases(const UserDescription& description, LoadedProblem& loaded) {
+  loaded.sets.training_cases = description.training_cases;
+  loaded.sets.validation_cases = static_cast<int>(description.validation_cases);
+  loaded.sets.test_cases = static_cast<int>(description.test_cases);
+  loaded.is_deterministic = description.is_deterministic;
+}
+
 void load_program(const ConfigTable& table, const ProgramSource& programs, LoadedProblem& loaded) {
   const ConfigTable program = table.get_table(kProgramSettings);
   const std::string command = program.get(kProgramCommand);
@@ -107,9 +113,7 @@ void load_program(const ConfigTable& table, const ProgramSource& programs, Loade
   loaded.program = command;
   loaded.name = made.description.name;
   loaded.title = made.description.summary;
-  loaded.sets.training_cases = made.description.training_cases;
-  loaded.sets.validation_cases = static_cast<int>(made.description.validation_cases);
-  loaded.sets.test_cases = static_cast<int>(made.description.test_cases);
+  set_user_cases(made.description, loaded);
   if (command.starts_with(kExec)) {
     for (const std::string& file : list_program_files(command.substr(kExec.size()))) {
       loaded.input_hashes[file] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));

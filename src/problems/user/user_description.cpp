@@ -397,6 +397,9 @@ void refuse_change(std::string_view name, const std::string& recorded, const Use
 }
 
 double choose_start(const DecisionVariable& variable) {
+  if (!(variable.lower < variable.upper)) {
+    return variable.lower;  // check_description() refuses these bounds
+  }
   const double middle =
       variable.scale == Scale::logarithmic && variable.lower * variable.upper > 0
           ? std::copysign(std::sqrt(variable.lower * variable.upper), variable.lower)
