@@ -92,8 +92,8 @@ class ConfigTable {
   std::string describe_place(const AnySetting& setting,
                              std::optional<std::size_t> element = std::nullopt) const;
   // Records a value that the reader chose because the file leaves it open, or in place of the
-  // file's. Only to_json() shows it; reading and has() do not. Not for tables of an array. A whole
-  // number is recorded without decimal point.
+  // file's. Only to_json() shows it; reading and has() do not. A whole number is
+  // recorded without decimal point.
   template <class Value>
   void settle(const Setting<Value>& setting, const std::type_identity_t<Value>& value) const;
   // Leaves a key out of to_json(), whether the file has it or not. For a value that means the same

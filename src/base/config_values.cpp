@@ -16,6 +16,18 @@ std::string quote_json(const std::string& text) {
   return nlohmann::json(text).dump();
 }
 
+// Appends the array `key`. `settled` holds what was settled in its elements, as "KEY[0]".
+void append_array(const Value& array, std::string_view key, const Value& settled,
+                  std::string& out) {
+  out += '[';
+  for (std::size_t i = 0; i < array.items.size(); ++i) {
+    const auto found = settled.keys.find(fmt::format("{}[{}]", key, i));
+    out += i == 0 ? "" : ",";
+    append_json(array.items[i], found == settled.keys.end() ? nullptr : found->second.get(), out);
+  }
+  out += ']';
+}
+
 }  // namespace
 
 void append_json(const Value& value, const Value* settled, std::string& out) {
@@ -57,6 +69,9 @@ void append_json(const Value& value, const Value* settled, std::string& out) {
       }
       if (settled != nullptr) {
         for (const auto& [key, child] : settled->keys) {
+          if (key.ends_with(']')) {
+            continue;  // of a table in an array
+          }
           both[key].second = child.get();
           if (child->is_left_out) {
             both.erase(key);
@@ -70,6 +85,10 @@ void append_json(const Value& value, const Value* settled, std::string& out) {
         }
         out += quote_json(std::string(key)) + ':';
         const auto [own, chosen] = children;
+        if (own != nullptr && own->kind == Kind::array && chosen == nullptr && settled != nullptr) {
+          append_array(*own, key, *settled, out);
+          continue;
+        }
         append_json(own != nullptr ? *own : *chosen, own != nullptr ? chosen : nullptr, out);
       }
       out += '}';

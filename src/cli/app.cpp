@@ -342,6 +342,8 @@ void add_all_commands(CLI::App& app, Session& session) {
   add_import(app, session);
   add_check_plugin(app, session);
   add_new_plugin(app, session);
+  add_check_problem(app, session);
+  add_new_problem(app, session);
   add_doctor(app, session);
   add_manual(app, session);
   add_completion(app, session);

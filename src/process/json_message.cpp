@@ -47,6 +47,8 @@ std::string replace_nan(const std::string& line) {
   return replaced;
 }
 
+}  // namespace
+
 bool is_name(const std::string& text) {
   constexpr std::size_t kLongestName = 64;
   return !text.empty() && text.size() <= kLongestName &&
@@ -56,8 +58,6 @@ bool is_name(const std::string& text) {
                   c == '.';
          });
 }
-
-}  // namespace
 
 std::string quote(const std::string& text) {
   return fmt::format("'{}'{}", sanitize(text.substr(0, kQuoted)),
@@ -88,10 +88,7 @@ std::string read_text(const json& object, const char* key, const std::string& wh
 std::string read_name(const json& object, const std::string& where) {
   const std::string name = read_text(object, "name", where);
   if (!is_name(name)) {
-    throw ProtocolError(
-        fmt::format("sent {} named {}; a name begins with a letter or digit, goes on with letters, "
-                    "digits, '_', '-' and '.', and has at most 64 of them",
-                    where, quote(name)));
+    throw ProtocolError(fmt::format("sent {} named {}; {}", where, quote(name), kNameRule));
   }
   return name;
 }

@@ -30,7 +30,12 @@ const nlohmann::json& require(const nlohmann::json& object, const char* key,
                               const std::string& where);
 std::string read_text(const nlohmann::json& object, const char* key, const std::string& where);
 double read_number(const nlohmann::json& object, const char* key, const std::string& where);
-// Returns the field "name". Refuses what does not fit command lines and file names.
+// Returns whether a text fits command lines and file names; kNameRule says which texts do.
+bool is_name(const std::string& text);
+inline constexpr const char* kNameRule =
+    "a name begins with a letter or digit, goes on with letters, digits, '_', '-' and '.', and has "
+    "at most 64 of them";
+// Returns the field "name". Refuses what is no name.
 std::string read_name(const nlohmann::json& object, const std::string& where);
 
 }  // namespace armwright

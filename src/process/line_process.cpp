@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -25,6 +26,10 @@ namespace armwright {
 namespace {
 
 constexpr auto kSlice = std::chrono::milliseconds(100);  // the time between two checks
+
+// Of output that is thrown away. More than a pipe holds, so that what a program wrote before its end
+// is read at once.
+constexpr std::size_t kMostAtOnce = std::size_t{1} << 20;
 
 using Clock = LineProcess::Clock;
 
@@ -57,6 +62,7 @@ struct ChildPlan {
   std::array<int, 3> streams{};  // standard input, output and error
   int report = -1;               // the child writes errno here if it cannot start
   char* const* words = nullptr;
+  const char* folder = nullptr;  // null: that of the parent
 };
 
 [[noreturn]] void become_program(const ChildPlan& plan) {
@@ -71,7 +77,9 @@ struct ChildPlan {
   }
   closefrom(kReport + 1);
   reset_signals();
-  execvp(plan.words[0], plan.words);
+  if (plan.folder == nullptr || chdir(plan.folder) == 0) {
+    execvp(plan.words[0], plan.words);
+  }
   const int error = errno;
   [[maybe_unused]] const ssize_t told = write(kReport, &error, sizeof error);
   _exit(EXIT_FAILURE);
@@ -89,7 +97,8 @@ int read_report(int report) {
 
 }  // namespace
 
-LineProcess::LineProcess(const std::vector<std::string>& words, OutputLog& log)
+LineProcess::LineProcess(const std::vector<std::string>& words, OutputLog& log,
+                         const std::filesystem::path& folder)
     : log_(log), next_memory_check_(Clock::now()) {
   // The child's input is a socket and not a pipe, so that send() can suppress SIGPIPE.
   std::array<int, 2> to_child{};
@@ -120,7 +129,8 @@ LineProcess::LineProcess(const std::vector<std::string>& words, OutputLog& log)
   const ChildPlan plan{.parent = getpid(),
                        .streams = {child_input.get(), child_output.get(), log_.child_end()},
                        .report = child_report.get(),
-                       .words = arguments.data()};
+                       .words = arguments.data(),
+                       .folder = folder.empty() ? nullptr : folder.c_str()};
   {
     const AllSignalsBlocked blocked;
     pid_ = fork();
@@ -186,9 +196,9 @@ void LineProcess::check_memory() {
   }
 }
 
-void LineProcess::read_available() {
+void LineProcess::read_available(std::size_t most) {
   std::array<char, 65536> buffer;
-  while (!at_end_ && received_.size() <= kLongestLine) {
+  while (!at_end_ && received_.size() <= most) {
     const ssize_t count = read(output_.get(), buffer.data(), buffer.size());
     if (count > 0) {
       received_.append(buffer.data(), static_cast<std::size_t>(count));
@@ -320,6 +330,44 @@ std::string LineProcess::finish(double patience_s) {
   }
   const std::string exit = kill();
   return exit == describe_exit(0) ? "" : exit;
+}
+
+LineProcess::Ending LineProcess::complete(double limit_s, std::size_t most_bytes) {
+  input_.close();
+  // Wakes poll() when the program ends. Without it, poll() wakes after a slice.
+  const FileDescriptor end(static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)));
+  Ending ending;
+  WakingTime passed;
+  while (true) {
+    // As in receive(): what was written before the end is read after it has been noticed.
+    const bool ended = has_ended(pid_);
+    read_available(kMostAtOnce);
+    const std::size_t room = most_bytes - ending.output.size();
+    ending.is_cut |= received_.size() > room;
+    ending.output += std::string_view(received_).substr(0, room);
+    received_.clear();
+    log_.take_available();
+    if (ended) {
+      break;
+    }
+    check_memory();
+    passed.look();
+    if (passed.get_s() > limit_s) {
+      throw LineProcessSilence(fmt::format("has not ended within {:g} s", limit_s));
+    }
+    std::array<pollfd, 3> waiting{pollfd{end.get(), POLLIN, 0},
+                                  pollfd{at_end_ ? -1 : output_.get(), POLLIN, 0},
+                                  pollfd{log_.get(), POLLIN, 0}};
+    poll(waiting.data(), waiting.size(), static_cast<int>(kSlice.count()));
+  }
+  kill_group(pid_);
+  const int status = reap(std::exchange(pid_, -1));
+  log_.take_available();
+  if (WIFEXITED(status)) {
+    ending.exit_code = WEXITSTATUS(status);
+  }
+  ending.how = describe_exit(status);
+  return ending;
 }
 
 }  // namespace armwright

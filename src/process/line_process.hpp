@@ -6,6 +6,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <stdexcept>
@@ -36,8 +37,10 @@ class LineProcess {
 
   // Starts words[0], which is searched on the PATH. Its standard error goes to `log`, which must
   // live longer than this object. Throws Error{usage} if there is no such program. This and every
-  // function that waits throw Error{io} if the log cannot be written.
-  LineProcess(const std::vector<std::string>& words, OutputLog& log);
+  // function that waits throw Error{io} if the log cannot be written. The program begins in
+  // `folder`; an empty path stands for the folder of this process.
+  LineProcess(const std::vector<std::string>& words, OutputLog& log,
+              const std::filesystem::path& folder = {});
   ~LineProcess();  // kills
   LineProcess(const LineProcess&) = delete;
   LineProcess& operator=(const LineProcess&) = delete;
@@ -56,10 +59,23 @@ class LineProcess {
   // ended as text; empty for exit code 0 or if it had to be killed.
   std::string finish(double patience_s);
 
+  // How a program ended that ran to its end by itself.
+  struct Ending {
+    std::optional<int> exit_code;  // nothing if a signal killed it
+    std::string how;               // "ended with exit code 3"
+    std::string output;            // the beginning of its standard output
+    bool is_cut = false;           // true: it printed more
+  };
+  // For a program that gets no lines: closes its input, reads at most `most_bytes` of its output
+  // and lets it print the rest into the void, and waits for its end. Kills what it has started and
+  // left running. Throws LineProcessSilence if that takes longer than `limit_s`, and
+  // LineProcessFailure if it takes too much memory.
+  Ending complete(double limit_s, std::size_t most_bytes);
+
  private:
   std::string kill();  // kills and reaps it; returns how it ended
   void check_memory();
-  void read_available();
+  void read_available(std::size_t most = kLongestLine);
   std::optional<std::string> take_line();
 
   pid_t pid_ = -1;

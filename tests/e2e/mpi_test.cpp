@@ -138,13 +138,19 @@ TEST_F(Mpi, AComparisonOnAUsersProblemHasTheSameBytesForAnyThreadsAndRanks) {
       "exec:python3 " ARMWRIGHT_TEST_PLUGINS_SOURCE "/problem.py slow-squares";
   const auto make_command = [&](const std::string& out, const char* jobs) {
     return std::vector<std::string>{
-        "compare",      "--problems",
-        problem,        "--optimizers",
+        "compare",
+        "--problems",
+        problem,
+        "--optimizers",
         "ga,cmaes,lhs,nlopt:cobyla,nlopt:bobyqa,pagmo:de,pagmo:pso,ceres:lm",
-        "--replicates", "2",
-        "--budget",     "60",
-        "--jobs",       jobs,
-        "--out",        out,
+        "--replicates",
+        "2",
+        "--budget",
+        "60",
+        "--jobs",
+        jobs,
+        "--out",
+        out,
         "--quiet"};
   };
   const Outcome one = run_program(folder_.path(), make_command("one", "1"));

@@ -21,9 +21,7 @@ class CliUserProblem : public testing::Test {
     std::filesystem::copy_file(ARMWRIGHT_TEST_PLUGINS_SOURCE "/problem.py", folder_ / "mine.py");
   }
 
-  Outcome run(const std::vector<std::string>& words) {
-    return run_program(folder_.path(), words);
-  }
+  Outcome run(const std::vector<std::string>& words) { return run_program(folder_.path(), words); }
 
   // Replaces a text in the program of the problem.
   void edit_program(const std::string& what, const std::string& by) {
@@ -57,8 +55,8 @@ TEST_F(CliUserProblem, AProgramThatIsChangedSinceTheRunBeganIsRefusedWithTheDiff
   const Outcome changed = run(words);
   EXPECT_EQ(changed.exit_code, 2);
   EXPECT_THAT(changed.err,
-              AllOf(HasSubstr("another configuration"), HasSubstr("the input 'mine.py' has changed"),
-                    HasSubstr("description")));
+              AllOf(HasSubstr("another configuration"),
+                    HasSubstr("the input 'mine.py' has changed"), HasSubstr("description")));
 }
 
 TEST_F(CliUserProblem, AFaultyAnswerEndsTheRunAndTheMendedProgramGoesOnInAnotherFolder) {
@@ -84,8 +82,8 @@ TEST_F(CliUserProblem, HasItsOwnSettingsInAFileOfTheProblem) {
   const Outcome many = run({"optimize", "mine.toml", "--schedule", "fixed:5"});
   EXPECT_EQ(many.exit_code, 2);
   EXPECT_THAT(many.err, HasSubstr("needs more training cases than tuned has, which are 4"));
-  const Outcome bred = run({"optimize", "mine.toml", "--optimizer", "ga", "--schedule",
-                            "coevolution:4"});
+  const Outcome bred =
+      run({"optimize", "mine.toml", "--optimizer", "ga", "--schedule", "coevolution:4"});
   EXPECT_THAT(bred.err, HasSubstr("coevolution breeds the paths of a robot's tool"));
 }
 

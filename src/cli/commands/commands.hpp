@@ -30,6 +30,8 @@ void add_export(CLI::App& app, Session& session);
 void add_import(CLI::App& app, Session& session);
 void add_check_plugin(CLI::App& app, Session& session);
 void add_new_plugin(CLI::App& app, Session& session);
+void add_check_problem(CLI::App& app, Session& session);
+void add_new_problem(CLI::App& app, Session& session);
 void add_doctor(CLI::App& app, Session& session);
 void add_manual(CLI::App& app, Session& session);
 void add_completion(CLI::App& app, Session& session);

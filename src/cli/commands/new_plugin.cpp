@@ -1,4 +1,4 @@
-// armwright new-plugin: creates the files of a new optimizer.
+// armwright new-plugin and new-problem: create the files of a new optimizer or problem.
 
 #include <fmt/format.h>
 
@@ -28,9 +28,17 @@ constexpr const char* kNewPluginExamples = R"(Examples:
 
 The command writes a folder of that name with a working optimizer, its build files and a test. Nothing is overwritten.)";
 
+constexpr const char* kNewProblemExamples = R"(Examples:
+  armwright new-problem mine                       # a program in Python
+  armwright new-problem --language command mine    # a problem file that runs a command per case
+  cd mine && ./test.sh                             # checks every promise and optimizes it
+
+The command writes a folder of that name with a working problem and a test. Nothing is overwritten.)";
+
 struct NewPluginOptions {
+  const TemplateKind* kind = nullptr;
   std::string name;
-  std::string language = "c++";
+  std::string language;
 };
 
 // Throws Error{usage} if the name cannot be used. It names a file, a class, a CMake target and the
@@ -62,7 +70,7 @@ void check_name(const std::string& name) {
 
 int run_new_plugin(const NewPluginOptions& options) {
   check_name(options.name);
-  const auto languages = plugin_languages();
+  const auto languages = list_languages(*options.kind);
   if (std::ranges::count(languages, options.language) == 0) {
     throw Error(ErrorKind::usage, describe_unknown("--language", options.language, languages));
   }
@@ -76,7 +84,7 @@ int run_new_plugin(const NewPluginOptions& options) {
   }
   make_folder(folder);
   std::string text;
-  for (const PluginFile& file : make_plugin_files(options.language, options.name)) {
+  for (const PluginFile& file : make_files(*options.kind, options.language, options.name)) {
     const std::filesystem::path path = folder / file.name;
     write_file_atomically(path, file.content);
     if (file.is_program) {
@@ -95,21 +103,36 @@ int run_new_plugin(const NewPluginOptions& options) {
   return exit_code::kDone;
 }
 
-}  // namespace
-
-void add_new_plugin(CLI::App& app, Session& session) {
+// Adds a command that creates the files of one kind of plugin. `thing` is what its NAME names.
+void add_new(CLI::App& app, Session& session, const TemplateKind& kind, const char* name,
+             const char* summary, const char* thing, const char* examples) {
   auto options = std::make_shared<NewPluginOptions>();
-  CLI::App* command =
-      add_command(app, session, "new-plugin", "Create the files of an optimizer of your own",
-                  kNewPluginExamples);
-  command->add_option("NAME", options->name, "The name of the optimizer and of its folder")
+  options->kind = &kind;
+  options->language = list_languages(kind).front();
+  CLI::App* command = add_command(app, session, name, summary, examples);
+  command
+      ->add_option("NAME", options->name,
+                   fmt::format("The name of the {} and of its folder", thing))
       ->required();
   command
-      ->add_option("--language,-l", options->language,
-                   fmt::format("{} (default: c++)", join(plugin_languages(), ", ")))
+      ->add_option(
+          "--language,-l", options->language,
+          fmt::format("{} (default: {})", join(list_languages(kind), ", "), options->language))
       ->type_name("LANGUAGE");
   command->callback(
       [options, &session] { session.action = [options] { return run_new_plugin(*options); }; });
+}
+
+}  // namespace
+
+void add_new_plugin(CLI::App& app, Session& session) {
+  add_new(app, session, kPluginTemplates, "new-plugin",
+          "Create the files of an optimizer of your own", "optimizer", kNewPluginExamples);
+}
+
+void add_new_problem(CLI::App& app, Session& session) {
+  add_new(app, session, kProblemTemplates, "new-problem",
+          "Create the files of a problem of your own", "problem", kNewProblemExamples);
 }
 
 }  // namespace armwright

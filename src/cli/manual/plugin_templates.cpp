@@ -5,9 +5,7 @@
 namespace armwright {
 namespace {
 
-// The same optimizer in each language. In all texts, @NAME@ is the plugin's name, @CLASS@ its name
-// in PascalCase, @PLUGIN@ the value for --optimizer, @LANGUAGE@ the language, @SOURCE@ the source
-// file and @STEPS@ the build step.
+// The same optimizer in each language.
 
 constexpr const char* kCppPlugin =
     R"raw(// @NAME@: an optimizer for armwright. It takes normally distributed steps from the best point so far.
@@ -276,18 +274,10 @@ trap 'rm -rf "$results"' EXIT
 "$armwright" optimize sphere --optimizer "$plugin" --budget 1000 --out "$results/run"
 )raw";
 
-struct Language {
-  const char* name;
-  const char* suffix;
-  const char* source;
-  const char* cmake;   // nullptr if there is nothing to build
-  const char* plugin;  // the value of --optimizer in the plugin's folder
-};
-
-const Language kLanguages[] = {
-    {"c++", ".cpp", kCppPlugin, kCmakeCpp, "./build/lib@NAME@.so"},
-    {"c", ".c", kCPlugin, kCmakeC, "./build/lib@NAME@.so"},
-    {"python", ".py", kPythonPlugin, nullptr, "exec:python3 @NAME@.py"},
+constexpr TemplateLanguage kPluginLanguages[] = {
+    {"c++", ".cpp", kCppPlugin, kCmakeCpp, "./build/lib@NAME@.so", nullptr},
+    {"c", ".c", kCPlugin, kCmakeC, "./build/lib@NAME@.so", nullptr},
+    {"python", ".py", kPythonPlugin, nullptr, "exec:python3 @NAME@.py", nullptr},
 };
 
 std::string to_pascal_case(std::string_view name) {
@@ -314,17 +304,23 @@ std::string replace_all(std::string text, std::string_view what, std::string_vie
 
 }  // namespace
 
-std::vector<std::string> plugin_languages() {
+const TemplateKind kPluginTemplates = {.languages = kPluginLanguages,
+                                       .readme = kReadme,
+                                       .test_begin = kTestBegin,
+                                       .test_end = kTestEnd};
+
+std::vector<std::string> list_languages(const TemplateKind& kind) {
   std::vector<std::string> names;
-  for (const Language& language : kLanguages) {
+  for (const TemplateLanguage& language : kind.languages) {
     names.emplace_back(language.name);
   }
   return names;
 }
 
-std::vector<PluginFile> make_plugin_files(std::string_view language_name, std::string_view name) {
+std::vector<PluginFile> make_files(const TemplateKind& kind, std::string_view language_name,
+                                   std::string_view name) {
   std::vector<PluginFile> files;
-  for (const Language& language : kLanguages) {
+  for (const TemplateLanguage& language : kind.languages) {
     if (language.name != language_name) {
       continue;
     }
@@ -341,11 +337,14 @@ std::vector<PluginFile> make_plugin_files(std::string_view language_name, std::s
     if (language.cmake != nullptr) {
       files.push_back({"CMakeLists.txt", fill(language.cmake)});
     }
-    files.push_back({"README.md", fill(kReadme)});
-    files.push_back(
-        {"test.sh",
-         fill(std::string(kTestBegin) + (language.cmake == nullptr ? "" : kTestBuild) + kTestEnd),
-         true});
+    if (language.problem_file != nullptr) {
+      files.push_back({std::string(name) + ".toml", fill(language.problem_file)});
+    }
+    files.push_back({"README.md", fill(kind.readme)});
+    files.push_back({"test.sh",
+                     fill(std::string(kind.test_begin) +
+                          (language.cmake == nullptr ? "" : kTestBuild) + kind.test_end),
+                     true});
   }
   return files;
 }

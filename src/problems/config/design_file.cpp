@@ -100,7 +100,7 @@ const SettingTable& get_drive_settings() {
   return settings;
 }
 
-std::string quote(std::string_view text) {
+std::string quote_design_text(std::string_view text) {
   std::string quoted = "\"";
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -205,14 +205,15 @@ DesignFile load_design(std::string_view name_or_path) {
 std::string to_toml(const DesignFile& file) {
   const ControllerRow& controller = find_controller(file.design.controller);
   std::string text =
-      fmt::format("name = {}\ntitle = {}\nsource = {}\ncontroller = {}\n", quote(file.name),
-                  quote(file.title), quote(file.source), quote(file.design.controller));
+      fmt::format("name = {}\ntitle = {}\nsource = {}\ncontroller = {}\n",
+                  quote_design_text(file.name), quote_design_text(file.title),
+                  quote_design_text(file.source), quote_design_text(file.design.controller));
   if (file.design.speed_m_per_s) {
     text += fmt::format("speed_m_per_s = {}\n", format_exact(*file.design.speed_m_per_s));
   }
   for (std::size_t i = 0; i < file.design.joints.size(); ++i) {
     const JointDrive& joint = file.design.joints[i];
-    text += fmt::format("\n[[joint]]\nname = {}\n", quote(file.joint_names.at(i)));
+    text += fmt::format("\n[[joint]]\nname = {}\n", quote_design_text(file.joint_names.at(i)));
     for (std::size_t g = 0; g < controller.gains.size(); ++g) {
       text += fmt::format("{} = {}\n", controller.gains[g].key, format_exact(joint.gains.at(g)));
     }

@@ -22,9 +22,10 @@ const Setting<std::string> kTitle{"title", kNoDefault,
                                   "one line, for lists and reports (default: the name)"};
 const Setting<std::string> kDescription{"description", "", "some lines more"};
 const Setting<std::string> kProblemKind{
-    "kind", one_of({"tracking", "analytic", "program"}), kNoDefault,
+    "kind", one_of({"tracking", "analytic", "program", "command"}), kNoDefault,
     "tracking: a robot follows a moving target; analytic: a function with a known optimum; "
-    "program: a problem of your own that a program computes"};
+    "program: a problem of your own that a program computes; command: one that a command line "
+    "computes, case by case"};
 const Setting<std::string> kProblemName{
     "name", kNoDefault,
     "name of the problem and of its runs' folders (default: the file's name); {robot} in it stands "
@@ -269,12 +270,15 @@ const SettingTable& problem_settings() {
   static const SettingTable settings{
       .key = "",
       .settings = {&kTitle, &kDescription, &kProblemKind, &kProblemName},
-      .tables = {
-          &kRobotSettings,    &kTaskSettings,    &kControlSettings,     &kWorkspaceSettings,
-          &kPathSettings,     &kPhysicsSettings, &kTrainingSettings,    &kScheduleSettings,
-          &kRacingSettings,   &kSetsSettings,    &kRunSettings,         &kObjectiveSettings,
-          &kVariableSettings, &kMotorSettings,   &kRequirementSettings, &kPerturbationSettings,
-          &kSweepSettings,    &kWinnerSettings,  &kFunctionSettings,    &kProgramSettings}};
+      .tables = {&kRobotSettings,        &kTaskSettings,          &kControlSettings,
+                 &kWorkspaceSettings,    &kPathSettings,          &kPhysicsSettings,
+                 &kTrainingSettings,     &kScheduleSettings,      &kRacingSettings,
+                 &kSetsSettings,         &kRunSettings,           &kObjectiveSettings,
+                 &kVariableSettings,     &kMotorSettings,         &kRequirementSettings,
+                 &kPerturbationSettings, &kSweepSettings,         &kWinnerSettings,
+                 &kFunctionSettings,     &kProgramSettings,       &kCommandSettings,
+                 &kUserVariableSettings, &kUserObjectiveSettings, &kUserConstraintSettings,
+                 &kUserMetricSettings,   &kUserCasesSettings}};
   return settings;
 }
 
@@ -306,6 +310,10 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
   if (kind == "program") {
     load_program(table, programs, loaded);
     usual = loaded.sets;
+  } else if (kind == "command") {
+    loaded.name = read_name(table, path, loaded);
+    load_command(table, path, programs, loaded);
+    usual = loaded.sets;
   }
   loaded.name = read_name(table, path, loaded);
   loaded.title = table.get_or(kTitle, loaded.title.empty() ? loaded.name : loaded.title);
@@ -318,7 +326,7 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
   loaded.published = read_published_winner(table.get_table_or_empty(kWinnerSettings));
   if (kind == "analytic") {
     load_analytic(table, loaded);
-  } else if (kind == "program") {
+  } else if (kind == "program" || kind == "command") {
     settle_program(table, loaded);
   } else {
     load_tracking(table, engines, loaded);

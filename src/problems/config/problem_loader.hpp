@@ -58,6 +58,7 @@ struct LoadedProblem {
   std::optional<FunctionChoice> function;  // of an analytic function
   // Of a problem that a user has written, the program as the user typed it: "exec:python3 motor.py".
   std::string program;
+  bool is_deterministic = true;  // false: the same case of the same design can have other results
   Schedule schedule;
   int fixed_cases = 5;  // K for optimizers without generations, if the schedule needs generations
   Racing racing;

@@ -55,6 +55,24 @@ bool is_program_name(std::string_view name);
 // (problems/user).
 void load_program(const ConfigTable& table, const ProgramSource& programs, LoadedProblem& loaded);
 
+// The largest file of a program that is hashed as an input.
+inline constexpr std::size_t kProgramLimit_bytes = std::size_t{1} << 30;
+// Why a problem that is read from a record cannot be simulated.
+inline constexpr const char* kStartsNothing =
+    "this command reads what is recorded and starts no program";
+// Sets what a description says of cases.
+void set_user_cases(const UserDescription& description, LoadedProblem& loaded);
+
+// command_reader.cpp: [command] and the tables of a description, a problem that is a command per
+// case
+
+extern const SettingTable kCommandSettings, kUserVariableSettings, kUserObjectiveSettings,
+    kUserConstraintSettings, kUserMetricSettings, kUserCasesSettings;
+// Does what load_program() does. `path` is the problem's file. loaded.name must be set. Settles the
+// texts of templates, so that a recorded problem is read without them.
+void load_command(const ConfigTable& table, const std::filesystem::path& path,
+                  const ProgramSource& programs, LoadedProblem& loaded);
+
 // schedule_reader.cpp: [schedule] and [racing]
 
 extern const SettingTable kScheduleSettings;

@@ -20,7 +20,6 @@ namespace {
 constexpr std::string_view kExec = "exec:";
 constexpr std::string_view kHost = "host:";
 constexpr std::string_view kPython = "python:";
-constexpr std::size_t kProgramLimit_bytes = std::size_t{1} << 30;
 
 const Setting<std::string> kProgramCommand{
     "command", kNoDefault,
@@ -46,7 +45,8 @@ const Setting<std::string> kProgramDescription{
 // Returns what to do with a problem that a host program computes; empty for other problems.
 std::string explain_host_problem(std::string_view command) {
   if (command.starts_with(kPython)) {
-    return "it belongs to a program in Python; run it from there (docs/python.md). show, report and "
+    return "it belongs to a program in Python; run it from there (docs/python.md). show, report "
+           "and "
            "export work without it";
   }
   return command.starts_with(kHost)
@@ -95,7 +95,7 @@ UserProgram make_program(const std::string& command, const ServerLimits& limits,
     return program;
   }
   if (!programs.may_simulate) {
-    program.why_not = "this command reads what is recorded and starts no program";
+    program.why_not = kStartsNothing;
   } else if (is_exec) {
     program.start = make_program_start(words, limits, program.description);
   } else {
@@ -111,8 +111,7 @@ std::vector<std::string> list_files(const std::string& command) {
     return list_program_files(std::string_view(command).substr(kExec.size()));
   }
   std::error_code ignored;
-  return explain_host_problem(command).empty() &&
-                 std::filesystem::is_regular_file(command, ignored)
+  return explain_host_problem(command).empty() && std::filesystem::is_regular_file(command, ignored)
              ? std::vector{command}
              : std::vector<std::string>{};
 }
@@ -127,6 +126,13 @@ bool is_program_name(std::string_view name) {
   return name.starts_with(kExec) || !explain_host_problem(name).empty() || is_problem_library(name);
 }
 
+void set_user_cases(const UserDescription& description, LoadedProblem& loaded) {
+  loaded.sets.training_cases = description.training_cases;
+  loaded.sets.validation_cases = static_cast<int>(description.validation_cases);
+  loaded.sets.test_cases = static_cast<int>(description.test_cases);
+  loaded.is_deterministic = description.is_deterministic;
+}
+
 void load_program(const ConfigTable& table, const ProgramSource& programs, LoadedProblem& loaded) {
   const ConfigTable program = table.get_table(kProgramSettings);
   const std::string command = program.get(kProgramCommand);
@@ -138,9 +144,7 @@ void load_program(const ConfigTable& table, const ProgramSource& programs, Loade
   loaded.program = command;
   loaded.name = made.description.name;
   loaded.title = made.description.summary;
-  loaded.sets.training_cases = made.description.training_cases;
-  loaded.sets.validation_cases = static_cast<int>(made.description.validation_cases);
-  loaded.sets.test_cases = static_cast<int>(made.description.test_cases);
+  set_user_cases(made.description, loaded);
   for (const std::string& file : list_files(command)) {
     loaded.input_hashes[file] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));
   }

@@ -103,14 +103,13 @@ class ProgramServer final : public CaseServer {
 
 }  // namespace
 
-UserProgram describe_program(std::string_view command) {
-  UserProgram program{.name = fmt::format("exec:{}", command)};
+UserDescription describe_program(std::string_view command) {
   OutputLog log;
   LineProcess child(split_command(command), log);
-  program.description = ask_description(child, log, program.name);
+  UserDescription description = ask_description(child, log, fmt::format("exec:{}", command));
   child.send(R"({"type":"quit"})", kProgramEnd_s);
   child.finish(kProgramEnd_s);
-  return program;
+  return description;
 }
 
 StartServer make_program_start(std::string_view command, const ServerLimits& limits,

@@ -9,10 +9,10 @@
 
 namespace armwright {
 
-// Returns the problem of a program, which is started once to describe itself. `command` is the text
+// Returns the description of a program, which is started once to describe itself. `command` is the text
 // after "exec:"; it is split into words as by a shell, but no shell runs. Throws Error{usage} if
 // there is no such program, Error{bad_data} if it breaks the protocol.
-UserProgram describe_program(std::string_view command);
+UserDescription describe_program(std::string_view command);
 
 // Returns a function that starts the program as a server. The function throws Error{bad_data} if
 // the program describes itself in another way than `description`.

@@ -390,14 +390,18 @@ void check_same_description(std::string_view name, const UserDescription& record
   const std::string before = to_json(recorded);
   const std::string after = to_json(now);
   if (before != after) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("problem '{}' describes itself differently from what is recorded:\n  {}\n"
-                            "Use the problem as it was, or start a new run or study (--new)",
-                            sanitize(name), join(describe_differences(before, after), "\n  ")));
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format("problem '{}' describes itself differently from what is recorded:\n  {}\n"
+                    "Use the problem as it was, or start a new run or study (--new)",
+                    sanitize(name), join(describe_differences(before, after), "\n  ")));
   }
 }
 
 double choose_start(const DecisionVariable& variable) {
+  if (!(variable.lower < variable.upper)) {
+    return variable.lower;  // check_description() refuses these bounds
+  }
   const double middle =
       variable.scale == Scale::logarithmic && variable.lower * variable.upper > 0
           ? std::copysign(std::sqrt(variable.lower * variable.upper), variable.lower)

@@ -343,6 +343,16 @@ std::optional<double> UserProblem::calc_lower_bound(std::span<const double> /*x*
 
 }  // namespace
 
+// A program may give any reason, but reasons with these beginnings are made in this folder. The exit
+// code is how a command answers that a design fails.
+bool is_fault_of_program(const CaseOutcome& outcome) {
+  const auto begins = [&](std::string_view text) { return outcome.reason.starts_with(text); };
+  return outcome.status == EvaluationStatus::timed_out ||
+         (outcome.status == EvaluationStatus::failed &&
+          (begins("the program ") || begins("its ") || begins("one of its residuals ") ||
+           (begins("the command ") && !begins("the command ended with exit code "))));
+}
+
 std::shared_ptr<const Problem> make_user_problem(UserProgram program) {
   return std::make_shared<UserProblem>(std::move(program));
 }

@@ -14,4 +14,8 @@ namespace armwright {
 // Error{bad_data} if a server breaks its contract, and Error if none can be started.
 std::shared_ptr<const Problem> make_user_problem(UserProgram program);
 
+// Returns whether a case failed although its program did not answer that it fails: the program
+// crashed, hung, or answered with a number that is not finite.
+bool is_fault_of_program(const CaseOutcome& outcome);
+
 }  // namespace armwright

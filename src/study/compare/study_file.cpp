@@ -459,8 +459,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   plan.budget = request.budget.value_or(plan.budget);
   plan.baselines = plan.baselines && request.baselines;
   check_size(raw, plan);
-  const bool reads_programs =
-      !plan.programs.may_describe && request.plugins != PluginUse::run;
+  const bool reads_programs = !plan.programs.may_describe && request.plugins != PluginUse::run;
   load_problems(raw, reads_programs, plan);
   if (!plan.programs.may_describe) {
     std::ranges::move(list_programs(plan.problems), std::back_inserter(recorded));

@@ -65,6 +65,29 @@ position_m = [1.4, 0.2, 0.9]
 )";
 constexpr const char* kFunction = "kind = \"analytic\"\n[function]\nname = \"sphere\"\n";
 
+constexpr const char* kProgramProblem = "kind = \"program\"\n[program]\ncommand = \"exec:true\"\n";
+constexpr const char* kCommandProblem = R"(kind = "command"
+[command]
+run = "true"
+[[command.input]]
+file = "in"
+text = ""
+[[variable]]
+name = "x"
+lower = 0
+upper = 1
+[[objective]]
+name = "f"
+exit_code = true
+[[constraint]]
+name = "g"
+exit_code = true
+[[metric]]
+name = "m"
+exit_code = true
+[cases]
+)";
+
 struct Specimen {
   std::string text;
   std::vector<std::string> overrides;
@@ -99,6 +122,20 @@ Specimen make_specimen(const std::string& path) {
     specimen.text += kPoints;
   } else if (path.starts_with("function.")) {
     specimen.text = kFunction;
+  } else if (path.starts_with("program.")) {
+    specimen.text = kProgramProblem;
+  } else if (const auto part = path.substr(0, path.find_first_of(".["));
+             part == "command" || part == "variable" || part == "constraint" || part == "metric" ||
+             part == "cases" || path.starts_with("objective[]")) {
+    specimen.text = kCommandProblem;
+    const auto replace = [&](const std::string& what, const std::string& with) {
+      specimen.text.replace(specimen.text.find(what), what.size(), with);
+    };
+    if (path.ends_with(".template_text")) {
+      replace("text = \"\"", "template = \"in\"");
+    } else if (path.ends_with(".choices")) {
+      replace("lower = 0\nupper = 1\n", "type = \"category\"\n");
+    }
   }
   if (path == "requirement[].joint") {  // settling_time is of the whole arm
     const std::string tip = "quantity = \"settling_time\"\nlimit_s = 0.1\n";
@@ -214,10 +251,12 @@ TEST(Settings, DefaultsAreThoseOfAProblemThatLeavesThemOut) {
   const LoadedProblem base = folder.load("base.toml");
   for (const ListedSetting& one : list_settings(problem_settings())) {
     // Settings of a kind that the problem does not have cannot be set to the default.
-    const bool is_of_kind =
-        one.path.starts_with("path.") || one.path.starts_with("function.") ||
-        one.path.starts_with("racing.") || one.path.find("[]") != std::string::npos ||
-        one.path == "objective.cvar_share" || one.path == "objective.failure_penalty_m";
+    const bool is_of_kind = one.path.starts_with("path.") || one.path.starts_with("function.") ||
+                            one.path.starts_with("racing.") || one.path.starts_with("program.") ||
+                            one.path.starts_with("command.") || one.path.starts_with("cases.") ||
+                            one.path.find("[]") != std::string::npos ||
+                            one.path == "objective.cvar_share" ||
+                            one.path == "objective.failure_penalty_m";
     // 0 is no density: it stands for a missing one.
     if (is_of_kind || one.setting->default_text.empty() || one.path == "robot.density_kg_per_m3") {
       continue;

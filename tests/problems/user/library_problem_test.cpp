@@ -257,9 +257,7 @@ TEST(LibraryProblem, ADescriptionThatChangesIsRefusedWithTheDifference) {
 }
 
 TEST(LibraryProblem, FilesThatAreNoProblemsAreRefused) {
-  const auto open = [](const std::string& name) {
-    return [name] { load_library(name, {}); };
-  };
+  const auto open = [](const std::string& name) { return [name] { load_library(name, {}); }; };
   expect_error(open("./missing.so"), ErrorKind::usage, "there is no such file");
   expect_error(open(std::string(ARMWRIGHT_TEST_PLUGINS) + "/libgood.so"), ErrorKind::bad_data,
                "is an optimizer and no problem; name it with --optimizer");

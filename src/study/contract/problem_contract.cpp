@@ -1,0 +1,566 @@
+#include "study/contract/problem_contract.hpp"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/random.hpp"
+#include "base/text.hpp"
+#include "problems/user/user_problem.hpp"
+#include "study/contract/contract_checks.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr std::size_t kRandomDesigns = 4;  // beside the start
+constexpr std::size_t kMostCorners = 100;  // designs at the bounds
+constexpr int kParallelRounds = 3;
+constexpr int kTimedRounds = 5;           // an odd number, for the median
+constexpr std::size_t kTimedBatch = 100;  // as in the benchmark of overhead
+
+// One design on one case.
+struct Question {
+  std::vector<double> x;
+  std::uint64_t number = 0;
+};
+
+// A problem that was loaded for one check.
+class Specimen {
+ public:
+  explicit Specimen(const ProblemTrial& trial) : loaded_(trial.load()) {
+    const auto available = static_cast<std::size_t>(loaded_.sets.training_cases);
+    const std::size_t count = available > 0 ? std::min(trial.cases, available) : trial.cases;
+    for (std::uint64_t number = 0; number < count; ++number) {
+      block_.numbers.push_back(number);
+    }
+    block_.set = loaded_.sets.training;
+  }
+
+  const LoadedProblem& loaded() const { return loaded_; }
+  const Problem& problem() const { return *loaded_.problem; }
+  const ProblemDescription& description() const { return problem().description(); }
+  bool is_user_problem() const { return !loaded_.program.empty(); }
+
+  // Returns the start and a few designs from all over the box, each on every case.
+  std::vector<Question> make_questions() const {
+    std::vector<std::vector<double>> designs = {get_start()};
+    RandomStream random("check-problem");
+    for (std::size_t i = 0; i < kRandomDesigns; ++i) {
+      std::vector<double> x;
+      for (const DecisionVariable& v : description().variables) {
+        x.push_back(settle_value(v, draw(v, random)));
+      }
+      designs.push_back(std::move(x));
+    }
+    return cross(designs);
+  }
+
+  // Returns designs with one variable at a bound, or with each word of a category, on one case.
+  std::vector<Question> make_corners() const {
+    const std::vector<DecisionVariable>& variables = description().variables;
+    std::vector<std::vector<double>> designs(3, get_start());
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      designs[1][i] = variables[i].lower;
+      designs[2][i] = variables[i].upper;
+    }
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      const bool has_words = variables[i].type == VariableType::category;
+      const double step = has_words ? 1 : variables[i].upper - variables[i].lower;
+      for (double value = variables[i].lower;
+           value <= variables[i].upper && designs.size() < kMostCorners; value += step) {
+        designs.push_back(get_start());
+        designs.back()[i] = value;
+      }
+    }
+    std::vector<Question> questions;
+    for (std::vector<double>& x : designs) {
+      questions.push_back({std::move(x), 0});
+    }
+    return questions;
+  }
+
+  std::vector<double> get_start() const {
+    std::vector<double> start;
+    for (const DecisionVariable& variable : description().variables) {
+      start.push_back(variable.start);
+    }
+    return start;
+  }
+
+  std::vector<CaseOutcome> ask(std::span<const Question> questions, bool residuals = false) const {
+    std::vector<CaseJob> jobs;
+    for (const Question& one : questions) {
+      jobs.push_back({.x = one.x, .block = &block_, .number = one.number, .residuals = residuals});
+    }
+    return problem().simulate(jobs);
+  }
+  // Asks each question alone.
+  std::vector<CaseOutcome> ask_singly(std::span<const Question> questions) const {
+    std::vector<CaseOutcome> outcomes;
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      outcomes.push_back(ask(questions.subspan(i, 1)).front());
+    }
+    return outcomes;
+  }
+
+  // Returns "x=1 kind=round on case 3".
+  std::string describe(const Question& question) const {
+    constexpr std::size_t kMostShown = 6;
+    std::vector<std::string> words;
+    for (std::size_t i = 0; i < std::min(question.x.size(), kMostShown); ++i) {
+      const DecisionVariable& variable = description().variables[i];
+      words.push_back(fmt::format("{}={}", variable.name, format_value(variable, question.x[i])));
+    }
+    return fmt::format("{}{} on case {}", join(words, " "),
+                       question.x.size() > kMostShown ? " ..." : "", question.number);
+  }
+
+  // Returns the first difference of two answers to the same questions as text; empty if there is
+  // none. `how` says how the second answers were asked for.
+  std::string compare(std::span<const Question> questions, std::span<const CaseOutcome> first,
+                      std::span<const CaseOutcome> second, std::string_view how) const {
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      const std::string difference = compare(questions[i], first[i], second[i]);
+      if (!difference.empty()) {
+        return fmt::format("{}: {}{}", describe(questions[i]), difference, how);
+      }
+    }
+    return "";
+  }
+
+ private:
+  static double draw(const DecisionVariable& v, RandomStream& random) {
+    if (v.scale == Scale::logarithmic) {
+      return v.lower * std::pow(v.upper / v.lower, random.uniform());
+    }
+    const double past = v.type == VariableType::real ? 0 : 0.5;  // each value gets the same share
+    return random.uniform(v.lower - past, v.upper + past);
+  }
+
+  std::vector<Question> cross(const std::vector<std::vector<double>>& designs) const {
+    std::vector<Question> questions;
+    for (const std::vector<double>& x : designs) {
+      for (const std::uint64_t number : block_.numbers) {
+        questions.push_back({x, number});
+      }
+    }
+    return questions;
+  }
+
+  std::string compare(const Question& question, const CaseOutcome& a, const CaseOutcome& b) const {
+    if (a.status != b.status || a.reason != b.reason) {
+      const auto say = [](const CaseOutcome& outcome) {
+        return fmt::format("'{}'{}", to_string(outcome.status),
+                           outcome.reason.empty() ? "" : fmt::format(" ({})", outcome.reason));
+      };
+      return fmt::format("it was {}, and {}", say(a), say(b));
+    }
+    const Evaluation first = problem().aggregate(question.x, {&a, 1});
+    const Evaluation second = problem().aggregate(question.x, {&b, 1});
+    for (const auto& [names, left, right] :
+         {std::tuple{&description().objectives, &first.objectives, &second.objectives},
+          {&description().constraints, &first.constraint_values, &second.constraint_values},
+          {&description().metrics, &first.metrics, &second.metrics}}) {
+      for (std::size_t i = 0; i < left->size(); ++i) {
+        if ((*left)[i] != (*right)[i]) {
+          return fmt::format("'{}' was {}, and {}", (*names)[i].name, format_exact((*left)[i]),
+                             format_exact((*right)[i]));
+        }
+      }
+    }
+    return "";
+  }
+
+  LoadedProblem loaded_;
+  CaseBlock block_;
+};
+
+ContractFinding make_finding(std::string fault) {
+  return fault.empty() ? ContractFinding{} : make_broken(std::move(fault));
+}
+
+constexpr const char* kNotDeterministic = "it declares that its answers vary (deterministic)";
+
+ContractFinding check_description(const ProblemTrial& trial) {
+  const LoadedProblem first = trial.load();
+  const LoadedProblem second = trial.load();
+  return make_finding(first.resolved_json == second.resolved_json
+                          ? ""
+                          : "it described itself in two ways when it was started twice");
+}
+
+ContractFinding check_start(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  const Question question{specimen.get_start(), 0};
+  const CaseOutcome outcome = specimen.ask({&question, 1}).front();
+  return make_finding(outcome.status == EvaluationStatus::ok
+                          ? ""
+                          : fmt::format("{}: {}", specimen.describe(question), outcome.reason));
+}
+
+// A user's problem may answer that a design cannot be simulated. It must not crash on one.
+ContractFinding check_bounds(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  const std::vector<Question> corners = specimen.make_corners();
+  const std::vector<CaseOutcome> outcomes = specimen.ask(corners);
+  std::size_t failed = 0;
+  std::string first;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const CaseOutcome& outcome = outcomes[i];
+    if (outcome.status == EvaluationStatus::ok) {
+      continue;
+    }
+    const std::string what = fmt::format("{}: {}", specimen.describe(corners[i]), outcome.reason);
+    if (is_fault_of_program(outcome)) {
+      return make_broken(what);
+    }
+    first = failed++ == 0 ? what : first;
+  }
+  ContractFinding finding;
+  if (failed > 0) {
+    finding.detail = fmt::format(
+        "{} of {} designs at the bounds fail, as the problem says itself; "
+        "the first: {}",
+        failed, corners.size(), first);
+  }
+  return finding;
+}
+
+ContractFinding check_finite(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  const std::vector<Question> questions = specimen.make_questions();
+  const std::vector<CaseOutcome> outcomes = specimen.ask(questions);
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (is_fault_of_program(outcomes[i])) {
+      return make_broken(
+          fmt::format("{}: {}", specimen.describe(questions[i]), outcomes[i].reason));
+    }
+  }
+  return {};
+}
+
+ContractFinding check_repeatable(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  if (!specimen.loaded().is_deterministic) {
+    return make_exempt(kNotDeterministic);
+  }
+  const std::vector<Question> questions = specimen.make_questions();
+  const auto first = specimen.ask(questions);
+  return make_finding(specimen.compare(questions, first, specimen.ask(questions),
+                                       " when the same questions were asked again"));
+}
+
+ContractFinding check_fresh(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  if (!specimen.loaded().is_deterministic) {
+    return make_exempt(kNotDeterministic);
+  }
+  const std::vector<Question> questions = specimen.make_questions();
+  const auto first = specimen.ask(questions);
+  return make_finding(specimen.compare(questions, first, Specimen(trial).ask(questions),
+                                       " in a process that was started anew"));
+}
+
+ContractFinding check_order(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  if (!specimen.loaded().is_deterministic) {
+    return make_exempt(kNotDeterministic);
+  }
+  std::vector<Question> questions = specimen.make_questions();
+  auto first = specimen.ask(questions);
+  std::ranges::reverse(questions);
+  std::ranges::reverse(first);
+  return make_finding(specimen.compare(questions, first, Specimen(trial).ask(questions),
+                                       " when the cases came in another order"));
+}
+
+ContractFinding check_batch(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  if (!specimen.loaded().is_deterministic) {
+    return make_exempt(kNotDeterministic);
+  }
+  const std::vector<Question> questions = specimen.make_questions();
+  const auto first = specimen.ask(questions);
+  return make_finding(specimen.compare(questions, first, Specimen(trial).ask_singly(questions),
+                                       " when each was asked alone"));
+}
+
+ContractFinding check_parallel(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  if (!specimen.loaded().is_deterministic) {
+    return make_exempt(kNotDeterministic);
+  }
+  if (trial.jobs < 2) {
+    return make_exempt("it was tried with --jobs 1");
+  }
+  const std::vector<Question> questions = specimen.make_questions();
+  const auto first = specimen.ask(questions);
+  // Each thread has a process of its own, which has started before the others begin.
+  std::vector<std::unique_ptr<Specimen>> specimens;
+  for (unsigned job = 0; job < trial.jobs; ++job) {
+    specimens.push_back(std::make_unique<Specimen>(trial));
+    specimens.back()->ask({questions.data(), 1});
+  }
+  std::vector<std::string> faults(trial.jobs);
+  std::vector<std::exception_ptr> errors(trial.jobs);
+  std::vector<std::thread> threads;
+  for (unsigned job = 0; job < trial.jobs; ++job) {
+    threads.emplace_back([&, job] {
+      try {
+        for (int round = 0; round < kParallelRounds && faults[job].empty(); ++round) {
+          faults[job] = specimen.compare(questions, first, specimens[job]->ask_singly(questions),
+                                         fmt::format(" with {} processes at work", trial.jobs));
+        }
+      } catch (...) {
+        errors[job] = std::current_exception();
+      }
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  for (unsigned job = 0; job < trial.jobs; ++job) {
+    if (errors[job]) {
+      std::rethrow_exception(errors[job]);
+    }
+    if (!faults[job].empty()) {
+      return make_broken(faults[job]);
+    }
+  }
+  return {};
+}
+
+ContractFinding check_residuals(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  if (!specimen.description().has_residuals) {
+    return make_exempt("it has no residuals");
+  }
+  const std::vector<Question> questions = specimen.make_questions();
+  const auto outcomes = specimen.ask(questions, true);  // the problem itself checks the sums
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (outcomes[i].status != EvaluationStatus::ok) {
+      continue;
+    }
+    const std::size_t here = outcomes[i].residuals.size();
+    if (here == 0 || (count > 0 && here != count)) {
+      return make_broken(fmt::format("{}: there are {} residuals{}",
+                                     specimen.describe(questions[i]), here,
+                                     count > 0 ? fmt::format(", and {} before", count) : ""));
+    }
+    count = here;
+  }
+  return {};
+}
+
+// Returns the processes that this process has started.
+std::set<pid_t> list_children() {
+  std::set<pid_t> children;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::ifstream list(thread.path() / "children");
+    for (pid_t child = 0; list >> child;) {
+      children.insert(child);
+    }
+  }
+  return children;
+}
+
+ContractFinding check_kill(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  if (!specimen.is_user_problem()) {
+    return make_exempt("it has no process of its own");
+  }
+  if (!specimen.loaded().is_deterministic) {
+    return make_exempt(kNotDeterministic);
+  }
+  const std::vector<Question> questions = specimen.make_questions();
+  const std::set<pid_t> others = list_children();
+  const auto begin = std::chrono::steady_clock::now();
+  const auto first = specimen.ask(questions);
+  const auto half = (std::chrono::steady_clock::now() - begin) / 2;
+  std::exception_ptr error;
+  std::thread asking([&] {
+    try {
+      specimen.ask(questions);  // some of these cases fail
+    } catch (...) {
+      error = std::current_exception();
+    }
+  });
+  std::this_thread::sleep_for(half);
+  for (const pid_t child : list_children()) {
+    if (!others.contains(child)) {
+      kill(child, SIGKILL);
+    }
+  }
+  asking.join();
+  if (error) {
+    std::rethrow_exception(error);
+  }
+  // A process that was killed while it had no question is noticed by the next question.
+  specimen.ask({questions.data(), 1});
+  return make_finding(specimen.compare(questions, first, specimen.ask(questions),
+                                       " after its process had been killed"));
+}
+
+ContractFinding check_sets(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  const std::vector<double> start = specimen.get_start();
+  for (const auto& [role, set] :
+       {std::pair{CaseRole::validation, specimen.loaded().sets.validation},
+        std::pair{CaseRole::test, specimen.loaded().sets.test}}) {
+    const CaseBlock block{role, set, {0}};
+    const CaseJob job{.x = start, .block = &block};
+    const CaseOutcome outcome = specimen.problem().simulate({&job, 1}).front();
+    if (is_fault_of_program(outcome)) {
+      return make_broken(fmt::format("case 0 of {}: {}", set, outcome.reason));
+    }
+  }
+  return {};
+}
+
+ContractFinding check_record(const ProblemTrial& trial) {
+  const Specimen specimen(trial);
+  const CaseBlock block{CaseRole::test, specimen.loaded().sets.test, {0}};
+  const CaseRecord record = specimen.problem().record_case(specimen.get_start(), block, 0);
+  if (record.series.empty() && record.files.empty()) {
+    return make_exempt("it records nothing");
+  }
+  ContractFinding finding;
+  finding.detail = fmt::format("{} signals of {} values, {} files", record.series.size(),
+                               record.abscissa_values.size(), record.files.size());
+  return finding;
+}
+
+ContractFinding check_recorded(const ProblemTrial& trial) {
+  const LoadedProblem loaded = trial.load();
+  const LoadedProblem recorded =
+      load_recorded_problem(loaded.resolved_json, loaded.name, std::filesystem::current_path());
+  return make_finding(recorded.resolved_json == loaded.resolved_json
+                          ? ""
+                          : "its record is read as another problem");
+}
+
+double measure_thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Returns the medians of the time per case on the clock, and of the time that this thread computes.
+std::pair<double, double> measure_case_us(const Specimen& specimen, std::size_t batch) {
+  const std::vector<Question> some = specimen.make_questions();
+  std::vector<Question> questions;
+  for (std::size_t i = 0; i < batch; ++i) {
+    questions.push_back(some[i % some.size()]);
+  }
+  std::vector<double> clock;
+  std::vector<double> cpu;
+  for (int round = 0; round < kTimedRounds; ++round) {
+    const auto begin = std::chrono::steady_clock::now();
+    const double cpu_begin_s = measure_thread_cpu_s();
+    specimen.ask(questions);
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+    cpu.push_back(1e6 * (measure_thread_cpu_s() - cpu_begin_s) / static_cast<double>(batch));
+    clock.push_back(1e6 * passed.count() / static_cast<double>(batch));
+  }
+  std::ranges::sort(clock);
+  std::ranges::sort(cpu);
+  return {clock[kTimedRounds / 2], cpu[kTimedRounds / 2]};
+}
+
+ContractFinding check_time(const ProblemTrial& trial) {
+  constexpr double kSlow_us = 5e4;  // batches of slower cases would only take long
+  const Specimen specimen(trial);
+  const std::vector<Question> questions = specimen.make_questions();
+  specimen.ask({questions.data(), 1});  // starts it
+  const auto [alone_us, alone_cpu_us] = measure_case_us(specimen, 1);
+  const bool has_batch = alone_us < kSlow_us;
+  const auto [batch_us, batch_cpu_us] =
+      has_batch ? measure_case_us(specimen, kTimedBatch) : std::pair{alone_us, alone_cpu_us};
+  ContractFinding finding;
+  finding.detail = fmt::format("one case takes {:.0f} us", alone_us);
+  if (has_batch) {
+    finding.detail += fmt::format(", or {:.0f} us in batches of {}", batch_us, kTimedBatch);
+  }
+  if (specimen.is_user_problem()) {
+    finding.detail += fmt::format("; of it, armwright computes {:.0f} us{}", alone_cpu_us,
+                                  has_batch ? fmt::format(" and {:.0f} us", batch_cpu_us) : "");
+  }
+  finding.detail += " (medians)";
+  return finding;
+}
+
+}  // namespace
+
+const std::vector<ProblemCheck>& problem_checks() {
+  constexpr const char* kState =
+      "keep nothing from one case for the next: no global variables, caches or files that change "
+      "answers; begin random numbers with the seed of the case";
+  static const std::vector<ProblemCheck> checks = {
+      {"Description", "describes itself, each time in the same way",
+       "correct the field that the message names; a description must not depend on time or chance",
+       check_description},
+      {"Recorded", "its record is read without starting it",
+       "describe the problem with fixed numbers only", check_recorded},
+      {"Start", "simulates the start", "choose a start that works, or correct the program",
+       check_start},
+      {"Bounds", "survives designs at the bounds, and every word",
+       "answer {\"status\": \"diverged\", \"reason\": ...} for a design that cannot be simulated, "
+       "or "
+       "narrow the bounds",
+       check_bounds},
+      {"Finite", "answers with finite numbers",
+       "answer {\"status\": \"diverged\", \"reason\": ...} in place of NaN and infinity",
+       check_finite},
+      {"Sets", "simulates validation and test cases",
+       "make cases of the roles validation and test as of training", check_sets},
+      {"Repeatable", "same design and case, same answer", kState, check_repeatable},
+      {"Fresh", "the same answer in a new process",
+       "begin random numbers with the seed of the case; do not use the time, the process number or "
+       "the order of sets and directories",
+       check_fresh},
+      {"Order", "answers do not depend on the order of the cases", kState, check_order},
+      {"Batch", "answers do not depend on what is asked together", kState, check_batch},
+      {"Parallel", "several processes do not disturb each other",
+       "give each process files of its own, in a new temporary folder", check_parallel},
+      {"Residuals", "the squares of the residuals add up to the objective",
+       "answer with the same number of residuals each time, and with the sum of their squares as "
+       "the objective",
+       check_residuals},
+      {"Kill", "killed and started again, gives the same answers",
+       "leave no lock and no half-written file behind that a new process trips over", check_kill},
+      {"Record", "what it records can be read", "correct the message \"record\"", check_record},
+      {"Time", "time per case", "see the message", check_time},
+  };
+  return checks;
+}
+
+ContractFinding run_problem_check(const ProblemCheck& check, const ProblemTrial& trial) {
+  ContractFinding finding;
+  try {
+    finding = check.run(trial);
+  } catch (const std::exception& error) {
+    finding = make_broken(error.what());
+  }
+  if (finding.outcome == ContractOutcome::broken) {
+    finding.detail += fmt::format(". To do: {}", check.advice);
+  }
+  return finding;
+}
+
+}  // namespace armwright
