@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdlib>
@@ -265,25 +266,12 @@ class LibraryServer final : public CaseServer {
   }
 
   std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
-    const double limit_s =
-        limits_.time_limit_s * (process_.has_batches() ? static_cast<double>(jobs.size()) : 1);
-    process_.send(make_packet(QuestionKind::evaluate, jobs), limit_s);
     std::vector<CaseAnswer> answers;
     answers.reserve(jobs.size());
-    while (answers.size() < jobs.size()) {
-      const std::string packet = process_.receive(limit_s);
-      read_checked([&] {
-        PacketReader reader(packet);
-        if (!reader.get<bool>() || reader.get<std::uint64_t>() != id_) {
-          throw PacketError("an answer to another question");
-        }
-        for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
-          if (answers.size() == jobs.size()) {
-            throw PacketError("more answers than questions");
-          }
-          answers.push_back(read_answer(reader));
-        }
-      });
+    while (!jobs.empty()) {
+      const std::size_t count = std::min(jobs.size(), NativeCaller::kMostQuestions);
+      answer_some(jobs.first(count), answers);
+      jobs = jobs.subspan(count);
     }
     return answers;
   }
@@ -305,6 +293,29 @@ class LibraryServer final : public CaseServer {
   }
 
  private:
+  // Appends the answers to at most kMostQuestions jobs.
+  void answer_some(std::span<const CaseJob> jobs, std::vector<CaseAnswer>& answers) {
+    const std::size_t wanted = answers.size() + jobs.size();
+    const double limit_s =
+        limits_.time_limit_s * (process_.has_batches() ? static_cast<double>(jobs.size()) : 1);
+    process_.send(make_packet(QuestionKind::evaluate, jobs), limit_s);
+    while (answers.size() < wanted) {
+      const std::string packet = process_.receive(limit_s);
+      read_checked([&] {
+        PacketReader reader(packet);
+        if (!reader.get<bool>() || reader.get<std::uint64_t>() != id_) {
+          throw PacketError("an answer to another question");
+        }
+        for (auto left = reader.get<std::uint64_t>(); left > 0; --left) {
+          if (answers.size() == wanted) {
+            throw PacketError("more answers than questions");
+          }
+          answers.push_back(read_answer(reader));
+        }
+      });
+    }
+  }
+
   PacketWriter make_packet(QuestionKind kind, std::span<const CaseJob> jobs) {
     const UserDescription& description = process_.description();
     const armwright_case first = make_native_question(description, jobs.front());

@@ -179,16 +179,20 @@ class NativeServer final : public CaseServer {
       : caller_(problem), description_(std::move(description)) {}
 
   std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
-    std::vector<armwright_case> questions;
-    for (const CaseJob& job : jobs) {
-      questions.push_back(make_native_question(description_, job));
-    }
-    caller_.ask(questions, [](std::size_t) {});
     std::vector<CaseAnswer> answers;
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-      const NativeCaller::Answer one = caller_.answer(i);
-      answers.push_back(
-          make_answer(description_, one.status, one.reason, one.numbers, one.residuals));
+    while (!jobs.empty()) {
+      const auto some = jobs.first(std::min(jobs.size(), NativeCaller::kMostQuestions));
+      std::vector<armwright_case> questions;
+      for (const CaseJob& job : some) {
+        questions.push_back(make_native_question(description_, job));
+      }
+      caller_.ask(questions, [](std::size_t) {});
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        const NativeCaller::Answer one = caller_.answer(i);
+        answers.push_back(
+            make_answer(description_, one.status, one.reason, one.numbers, one.residuals));
+      }
+      jobs = jobs.subspan(some.size());
     }
     return answers;
   }

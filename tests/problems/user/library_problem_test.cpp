@@ -114,6 +114,18 @@ TEST(LibraryProblem, AnExceptionFailsItsOwnCaseOfABatch) {
   EXPECT_EQ(outcomes[0].metrics, outcomes[2].metrics);
 }
 
+TEST(LibraryProblem, GetsAtMost1000QuestionsAtOnce) {
+  const auto problem = make_library("mixed");
+  CaseBlock block{CaseRole::training, "train/1", {}};
+  for (std::uint64_t number = 0; number < 2500; ++number) {
+    block.numbers.push_back(number);
+  }
+  const std::vector<double> x = {0.5, 1, 10, 1};
+  const Evaluation evaluation = problem->evaluate(x, block);
+  EXPECT_EQ(evaluation.status, EvaluationStatus::ok) << evaluation.reason;
+  EXPECT_EQ(evaluation.case_errors.size(), 2500u);
+}
+
 TEST(LibraryProblem, RecordsACase) {
   const auto problem = make_library("mixed");
   const CaseRecord record =
@@ -152,7 +164,7 @@ TEST(LibraryProblem, IsLoadedByItsPathAndReadWithoutTheLibrary) {
       [&] {
         recorded.problem->evaluate(std::vector<double>{0, 1, 10, 0}, kLibraryCases);
       },
-      ErrorKind::usage, "there is no such file");
+      ErrorKind::usage, "starts no program");
 }
 
 TEST(LibraryProblem, OneCaseFailsWhenItsProcessFails) {
@@ -187,8 +199,8 @@ TEST(LibraryProblem, ExceptionsAndNumbersThatAreNotFiniteAreReasons) {
   const auto problem = make_library("faulty");
   EXPECT_EQ(run_fault(*problem, 4).reason, "it broke");
   EXPECT_EQ(run_fault(*problem, 5).reason, "something that is no std::exception was thrown");
-  EXPECT_EQ(run_fault(*problem, 7).reason, "its objective 'f' is not a number");
-  EXPECT_EQ(run_fault(*problem, 8).reason, "its objective 'f' is infinite");
+  EXPECT_EQ(run_fault(*problem, 7).reason, "its objective 'f' is not a finite number");
+  EXPECT_EQ(run_fault(*problem, 8).reason, "its objective 'f' is not a finite number");
   EXPECT_EQ(run_fault(*problem, 14).reason, "no solution");
   EXPECT_EQ(run_fault(*problem, 18).status, EvaluationStatus::diverged);
 }
@@ -252,7 +264,7 @@ TEST(LibraryProblem, ADescriptionThatChangesIsRefusedWithTheDifference) {
   const auto problem = make_library("faulty");
   setenv("FAULT", "other", 1);
   expect_error([&] { run_fault(*problem, 0); }, ErrorKind::bad_data,
-               "it describes itself differently from before");
+               "describes itself differently from what is recorded");
   unsetenv("FAULT");
 }
 
