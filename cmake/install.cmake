@@ -21,9 +21,9 @@ install(DIRECTORY configs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/config
 # Example plugins to read and to build. The program looks for built plugins in lib/armwright/plugins.
 install(DIRECTORY plugins/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/plugins COMPONENT runtime USE_SOURCE_PERMISSIONS
         PATTERN "__pycache__" EXCLUDE)
-# Example programs that use armwright as a library.
+# Examples: problems of users' own, and a program that uses armwright as a library.
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/examples COMPONENT runtime USE_SOURCE_PERMISSIONS
-        PATTERN "__pycache__" EXCLUDE)
+        PATTERN "__pycache__" EXCLUDE PATTERN "build" EXCLUDE)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime OPTIONAL)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)

@@ -3,6 +3,33 @@
 #include <cctype>
 
 namespace armwright {
+
+const char* const kCmakeCpp = R"raw(cmake_minimum_required(VERSION 3.25)
+project(@NAME@ LANGUAGES CXX)
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+find_package(armwright REQUIRED COMPONENTS plugin)
+
+add_library(@NAME@ MODULE @NAME@.cpp)
+target_compile_features(@NAME@ PRIVATE cxx_std_20)
+target_link_libraries(@NAME@ PRIVATE armwright::plugin)
+)raw";
+
+const char* const kCmakeC = R"raw(cmake_minimum_required(VERSION 3.25)
+project(@NAME@ LANGUAGES C)
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+find_package(armwright REQUIRED COMPONENTS plugin)
+
+add_library(@NAME@ MODULE @NAME@.c)
+set_target_properties(@NAME@ PROPERTIES C_STANDARD 99)
+target_link_libraries(@NAME@ PRIVATE armwright::plugin m)
+)raw";
+
 namespace {
 
 // The same optimizer in each language.
@@ -217,32 +244,6 @@ if request["type"] == "minimize":
     send({"type": "done"})
 )raw";
 
-constexpr const char* kCmakeCpp = R"raw(cmake_minimum_required(VERSION 3.25)
-project(@NAME@ LANGUAGES CXX)
-
-if(NOT CMAKE_BUILD_TYPE)
-  set(CMAKE_BUILD_TYPE Release)
-endif()
-find_package(armwright REQUIRED COMPONENTS plugin)
-
-add_library(@NAME@ MODULE @NAME@.cpp)
-target_compile_features(@NAME@ PRIVATE cxx_std_20)
-target_link_libraries(@NAME@ PRIVATE armwright::plugin)
-)raw";
-
-constexpr const char* kCmakeC = R"raw(cmake_minimum_required(VERSION 3.25)
-project(@NAME@ LANGUAGES C)
-
-if(NOT CMAKE_BUILD_TYPE)
-  set(CMAKE_BUILD_TYPE Release)
-endif()
-find_package(armwright REQUIRED COMPONENTS plugin)
-
-add_library(@NAME@ MODULE @NAME@.c)
-set_target_properties(@NAME@ PROPERTIES C_STANDARD 99)
-target_link_libraries(@NAME@ PRIVATE armwright::plugin m)
-)raw";
-
 constexpr const char* kReadme = R"raw(# @NAME@
 
 An optimizer for armwright, created by `armwright new-plugin --language @LANGUAGE@ @NAME@`.
@@ -274,7 +275,7 @@ trap 'rm -rf "$results"' EXIT
 "$armwright" optimize sphere --optimizer "$plugin" --budget 1000 --out "$results/run"
 )raw";
 
-constexpr TemplateLanguage kPluginLanguages[] = {
+const TemplateLanguage kPluginLanguages[] = {
     {"c++", ".cpp", kCppPlugin, kCmakeCpp, "./build/lib@NAME@.so", nullptr},
     {"c", ".c", kCPlugin, kCmakeC, "./build/lib@NAME@.so", nullptr},
     {"python", ".py", kPythonPlugin, nullptr, "exec:python3 @NAME@.py", nullptr},

@@ -28,6 +28,11 @@ struct TemplateKind {
   const char* test_end;
 };
 
+// CMakeLists.txt of a library in C++ or C that needs only headers of armwright. They are set before
+// any other object of the program, because they are constants.
+extern const char* const kCmakeCpp;
+extern const char* const kCmakeC;
+
 extern const TemplateKind kPluginTemplates;   // optimizers
 extern const TemplateKind kProblemTemplates;  // problems
 

@@ -59,6 +59,108 @@ for line in sys.stdin:
         break
 )raw";
 
+constexpr const char* kCppProblem =
+    R"raw(// @NAME@: a problem for armwright. A controller with the gains kp and kd moves a mass by 1 m. Replace
+// describe() and evaluate() by your own problem.
+#include <algorithm>
+#include <armwright/problem.hpp>
+#include <cmath>
+
+namespace aw = armwright::problem;
+
+class @CLASS@ : public aw::Problem {
+ public:
+  aw::Description describe() const override {
+    aw::Description all;
+    all.name = "@NAME@";
+    all.summary = "Move a mass by 1 m, quickly and without much overshoot";
+    all.variables = {aw::logarithmic("kp", "N/m", 1, 1000),
+                     aw::logarithmic("kd", "N s/m", 0.1, 100)};
+    all.objectives = {{"itae", "m s2"}};
+    all.constraints = {{"overshoot", "m", 0.05}};
+    all.metrics = {{"peak_force", "N"}};
+    return all;
+  }
+
+  // The answer may depend on the gains and the case only.
+  aw::Answer evaluate(const aw::Point& gains, const aw::Case& /*one*/) override {
+    const double mass_kg = 2, dt_s = 0.001, limit_n = 50;
+    double x_m = 0, v_m_per_s = 0, itae = 0, overshoot_m = 0, peak_n = 0;
+    for (int step = 0; step < 3000; ++step) {
+      const double error_m = 1 - x_m;
+      const double force_n =
+          std::clamp(gains[0] * error_m - gains[1] * v_m_per_s, -limit_n, limit_n);
+      v_m_per_s += force_n / mass_kg * dt_s;
+      x_m += v_m_per_s * dt_s;
+      itae += step * dt_s * std::abs(error_m) * dt_s;
+      overshoot_m = std::max(overshoot_m, -error_m);
+      peak_n = std::max(peak_n, std::abs(force_n));
+    }
+    aw::Answer answer(itae);
+    answer.constraints = {overshoot_m};
+    answer.metrics = {peak_n};
+    return answer;
+  }
+};
+
+ARMWRIGHT_PROBLEM(@CLASS@)
+)raw";
+
+constexpr const char* kCProblem =
+    R"raw(/* @NAME@: a problem for armwright. A controller with the gains kp and kd moves a mass by 1 m. Replace
+ * the tables and evaluate() by your own problem. */
+#include <armwright/problem.h>
+#include <math.h>
+
+static const struct armwright_variable variables[] = {
+    {"kp", "N/m", ARMWRIGHT_VARIABLE_REAL, 1, 1000, NAN, 1, NULL},
+    {"kd", "N s/m", ARMWRIGHT_VARIABLE_REAL, 0.1, 100, NAN, 1, NULL}};
+static const struct armwright_objective objectives[] = {{"itae", "m s2", 0, 1, NULL, NULL}};
+static const struct armwright_constraint constraints[] = {{"overshoot", "m", 0.05}};
+static const struct armwright_metric metrics[] = {{"peak_force", "N"}};
+
+/* The answer may depend on the question only. */
+static void evaluate(void* context, const struct armwright_case* question,
+                     struct armwright_answer* answer) {
+  const double mass_kg = 2, dt_s = 0.001, limit_n = 50;
+  double x_m = 0, v_m_per_s = 0, itae = 0, overshoot_m = 0, peak_n = 0;
+  int step;
+  (void)context;
+  for (step = 0; step < 3000; ++step) {
+    const double error_m = 1 - x_m;
+    const double wanted_n = question->x[0] * error_m - question->x[1] * v_m_per_s;
+    const double force_n = fmin(fmax(wanted_n, -limit_n), limit_n);
+    v_m_per_s += force_n / mass_kg * dt_s;
+    x_m += v_m_per_s * dt_s;
+    itae += step * dt_s * fabs(error_m) * dt_s;
+    overshoot_m = fmax(overshoot_m, -error_m);
+    peak_n = fmax(peak_n, fabs(force_n));
+  }
+  answer->objectives[0] = itae;
+  answer->constraints[0] = overshoot_m;
+  answer->metrics[0] = peak_n;
+}
+
+static const struct armwright_user_problem problem = {
+    .abi = ARMWRIGHT_PROBLEM_ABI,
+    .struct_size = sizeof(struct armwright_user_problem),
+    .name = "@NAME@",
+    .summary = "Move a mass by 1 m, quickly and without much overshoot",
+    .variables = variables,
+    .variable_count = sizeof(variables) / sizeof(variables[0]),
+    .objectives = objectives,
+    .objective_count = sizeof(objectives) / sizeof(objectives[0]),
+    .constraints = constraints,
+    .constraint_count = sizeof(constraints) / sizeof(constraints[0]),
+    .metrics = metrics,
+    .metric_count = sizeof(metrics) / sizeof(metrics[0]),
+    .evaluate = evaluate};
+
+ARMWRIGHT_PROBLEM_EXPORT const struct armwright_user_problem* armwright_user_problem(void) {
+  return &problem;
+}
+)raw";
+
 constexpr const char* kAwkModel =
     R"raw(# @NAME@: a simulator that reads gains from a file and prints results. A controller with the gains kp
 # and kd moves a mass by 1 m. Replace it by your own simulator, and its command line in @NAME@.toml.
@@ -154,8 +256,10 @@ trap 'rm -rf "$results"' EXIT
 "$armwright" optimize "$problem" --optimizer cmaes --budget 200 --out "$results/run"
 )raw";
 
-constexpr TemplateLanguage kProblemLanguages[] = {
+const TemplateLanguage kProblemLanguages[] = {
     {"python", ".py", kPythonProblem, nullptr, "exec:python3 @NAME@.py", nullptr},
+    {"c++", ".cpp", kCppProblem, kCmakeCpp, "./build/lib@NAME@.so", nullptr},
+    {"c", ".c", kCProblem, kCmakeC, "./build/lib@NAME@.so", nullptr},
     {"command", ".awk", kAwkModel, nullptr, "./@NAME@.toml", kCommandProblem},
 };
 
