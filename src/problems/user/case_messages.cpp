@@ -56,9 +56,9 @@ std::vector<double> read_values(const json& answer, const char* key, std::span<c
     return values;
   }
   if (list == answer.end() || !list->is_array() || list->size() != named.size()) {
-    throw ProtocolError(fmt::format(
-        "sent {} whose \"{}\" are {}; the description has {} of them", where, key,
-        list == answer.end() ? "missing" : quote(*list), named.size()));
+    throw ProtocolError(fmt::format("sent {} whose \"{}\" are {}; the description has {} of them",
+                                    where, key, list == answer.end() ? "missing" : quote(*list),
+                                    named.size()));
   }
   for (std::size_t i = 0; i < named.size(); ++i) {
     values.push_back(read_value((*list)[i], where, get_name(named[i])));
@@ -83,49 +83,11 @@ EvaluationStatus read_status(const json& answer, const std::string& where) {
                   where, quote(status)));
 }
 
-CaseAnswer read_answer(const json& answer, const UserDescription& description,
-                       const std::string& where) {
-  CaseAnswer read;
-  if (answer.is_number() || answer.is_null()) {  // the short form of one objective
-    read.objectives = {read_value(answer, where, description.objectives.front().quantity.name)};
-    check_answer(read, description, where);
-    return read;
-  }
-  if (!answer.is_object()) {
-    throw ProtocolError(
-        fmt::format("sent {} that is no object and no number: {}", where, quote(answer)));
-  }
-  read.status = read_status(answer, where);
-  if (read.status != EvaluationStatus::ok) {
-    read.reason = answer.contains("reason") ? read_text(answer, "reason", where) : "";
-    read.reason = sanitize(read.reason.substr(0, kLongestReason));
-    return read;
-  }
-  const auto name_of = [](const auto& one) -> const std::string& { return one.quantity.name; };
-  read.objectives = read_values(answer, "objectives", std::span(description.objectives), name_of,
-                                where);
-  read.constraints = read_values(answer, "constraints", std::span(description.constraints),
-                                 name_of, where);
-  read.metrics = read_values(
-      answer, "metrics", std::span(description.metrics),
-      [](const Quantity& metric) -> const std::string& { return metric.name; }, where);
-  if (const auto list = answer.find("residuals"); list != answer.end()) {
-    if (!list->is_array()) {
-      throw ProtocolError(
-          fmt::format("sent {} whose \"residuals\" are {}, not a list", where, quote(*list)));
-    }
-    for (const json& value : *list) {
-      read.residuals.push_back(read_value(value, where, "residuals"));
-    }
-  }
-  return read;
-}
-
 void check_id(const json& message, std::uint64_t id) {
   const json& sent = require(message, "id", "an answer");
   if (!sent.is_number_integer() || sent != id) {
-    throw ProtocolError(fmt::format("answered the question {}; it was asked question {}",
-                                    quote(sent), id));
+    throw ProtocolError(
+        fmt::format("answered the question {}; it was asked question {}", quote(sent), id));
   }
 }
 
@@ -139,8 +101,8 @@ std::vector<double> read_points(const json& object, const std::string& where) {
   std::vector<double> values;
   for (const json& value : list) {
     if (!value.is_number() || !std::isfinite(value.get<double>())) {
-      throw ProtocolError(fmt::format("sent {} with the value {}, not a finite number", where,
-                                      quote(value)));
+      throw ProtocolError(
+          fmt::format("sent {} with the value {}, not a finite number", where, quote(value)));
     }
     values.push_back(value.get<double>());
   }
@@ -148,7 +110,8 @@ std::vector<double> read_points(const json& object, const std::string& where) {
 }
 
 Quantity read_quantity_of(const json& object, const std::string& where) {
-  return {read_name(object, where), object.contains("unit") ? read_text(object, "unit", where) : ""};
+  return {read_name(object, where),
+          object.contains("unit") ? read_text(object, "unit", where) : ""};
 }
 
 // Returns the content of a file, which the message has as text or as base64.
@@ -212,16 +175,16 @@ std::string make_question(const UserDescription& description, const char* type, 
                      calc_case_seed(block, job.number));
     }
   }
-  return text + (jobs.front().residuals && description.has_residuals ? "],\"residuals\":true}"
-                                                                      : "]}");
+  return text +
+         (jobs.front().residuals && description.has_residuals ? "],\"residuals\":true}" : "]}");
 }
 
 void check_answer(const CaseAnswer& answer, const UserDescription& description,
                   const std::string& where) {
   const auto check = [&](std::size_t count, std::size_t expected, const char* what) {
     if (count != expected) {
-      throw ProtocolError(fmt::format("sent {} with {} {}; the description has {}", where, count,
-                                      what, expected));
+      throw ProtocolError(
+          fmt::format("sent {} with {} {}; the description has {}", where, count, what, expected));
     }
   };
   check(answer.objectives.size(), description.objectives.size(), "objectives");
@@ -229,12 +192,51 @@ void check_answer(const CaseAnswer& answer, const UserDescription& description,
   check(answer.metrics.size(), description.metrics.size(), "metrics");
 }
 
+CaseAnswer read_answer(const json& answer, const UserDescription& description,
+                       const std::string& where) {
+  CaseAnswer read;
+  if (answer.is_number() || answer.is_null()) {  // the short form of one objective
+    read.objectives = {read_value(answer, where, description.objectives.front().quantity.name)};
+    check_answer(read, description, where);
+    return read;
+  }
+  if (!answer.is_object()) {
+    throw ProtocolError(
+        fmt::format("sent {} that is no object and no number: {}", where, quote(answer)));
+  }
+  read.status = read_status(answer, where);
+  if (read.status != EvaluationStatus::ok) {
+    read.reason = answer.contains("reason") ? read_text(answer, "reason", where) : "";
+    read.reason = sanitize(read.reason.substr(0, kLongestReason));
+    return read;
+  }
+  const auto name_of = [](const auto& one) -> const std::string& { return one.quantity.name; };
+  read.objectives =
+      read_values(answer, "objectives", std::span(description.objectives), name_of, where);
+  read.constraints =
+      read_values(answer, "constraints", std::span(description.constraints), name_of, where);
+  read.metrics = read_values(
+      answer, "metrics", std::span(description.metrics),
+      [](const Quantity& metric) -> const std::string& { return metric.name; }, where);
+  if (const auto list = answer.find("residuals"); list != answer.end()) {
+    if (!list->is_array()) {
+      throw ProtocolError(
+          fmt::format("sent {} whose \"residuals\" are {}, not a list", where, quote(*list)));
+    }
+    for (const json& value : *list) {
+      read.residuals.push_back(read_value(value, where, "residuals"));
+    }
+  }
+  return read;
+}
+
 void read_answers(const json& message, const UserDescription& description, std::uint64_t id,
                   std::size_t most, std::vector<CaseAnswer>& answers) {
   if (read_type(message) != "answers") {
-    throw ProtocolError(fmt::format("answered \"evaluate\" with a message of the type {}; it must "
-                                    "be \"answers\"",
-                                    quote(read_type(message))));
+    throw ProtocolError(
+        fmt::format("answered \"evaluate\" with a message of the type {}; it must "
+                    "be \"answers\"",
+                    quote(read_type(message))));
   }
   check_id(message, id);
   const json& list = require(message, "answers", "an answer");

@@ -54,9 +54,8 @@ class UserProblem final : public Problem {
     std::vector<CaseOutcome> outcomes;
     while (!jobs.empty()) {
       const auto is_other = [&](const CaseJob& job) { return job.block != jobs.front().block; };
-      const auto count =
-          std::min<std::size_t>(kMostJobs, static_cast<std::size_t>(
-                                               std::ranges::find_if(jobs, is_other) - jobs.begin()));
+      const auto count = std::min<std::size_t>(
+          kMostJobs, static_cast<std::size_t>(std::ranges::find_if(jobs, is_other) - jobs.begin()));
       ask(jobs.first(count), outcomes);
       jobs = jobs.subspan(count);
     }
@@ -68,6 +67,12 @@ class UserProblem final : public Problem {
   std::optional<double> calc_lower_bound(std::span<const double> x,
                                          std::span<const CaseOutcome> outcomes,
                                          std::size_t cases) const override;
+
+  const UserDescription& user_description() const { return program_.description; }
+  Evaluation evaluate_answer(const CaseJob& job, CaseAnswer answer) const {
+    const std::vector<CaseOutcome> outcomes = {make_outcome(job, std::move(answer))};
+    return aggregate(job.x, outcomes);
+  }
 
   std::vector<double> penalty_objectives() const override {
     std::vector<double> penalties;
@@ -103,8 +108,8 @@ class UserProblem final : public Problem {
 
   std::unique_ptr<CaseServer> take_server() const {
     if (!program_.start) {
-      throw Error(ErrorKind::usage, fmt::format("problem '{}': {}", sanitize(program_.name),
-                                                program_.why_not));
+      throw Error(ErrorKind::usage,
+                  fmt::format("problem '{}': {}", sanitize(program_.name), program_.why_not));
     }
     return pool_.take();
   }
@@ -216,9 +221,10 @@ class UserProblem final : public Problem {
     }
     const double objective = answer.objectives.front();
     if (std::abs(sum - objective) > kResidualTolerance * std::max(std::abs(objective), sum)) {
-      fail(fmt::format("it answered with the objective {} and with residuals whose squares add up "
-                       "to {}; both must be the same",
-                       format_exact(objective), format_exact(sum)));
+      fail(
+          fmt::format("it answered with the objective {} and with residuals whose squares add up "
+                      "to {}; both must be the same",
+                      format_exact(objective), format_exact(sum)));
     }
   }
 
@@ -238,9 +244,7 @@ class UserProblem final : public Problem {
     return outcome;
   }
 
-  bool has_penalty() const {
-    return program_.description.objectives.front().penalty.has_value();
-  }
+  bool has_penalty() const { return program_.description.objectives.front().penalty.has_value(); }
 
   UserProgram program_;
   ProblemDescription description_;
@@ -343,6 +347,15 @@ std::optional<double> UserProblem::calc_lower_bound(std::span<const double> /*x*
 
 std::shared_ptr<const Problem> make_user_problem(UserProgram program) {
   return std::make_shared<UserProblem>(std::move(program));
+}
+
+const UserDescription* find_user_description(const Problem& problem) {
+  const auto* user = dynamic_cast<const UserProblem*>(&problem);
+  return user == nullptr ? nullptr : &user->user_description();
+}
+
+Evaluation make_evaluation(const Problem& problem, const CaseJob& job, CaseAnswer answer) {
+  return dynamic_cast<const UserProblem&>(problem).evaluate_answer(job, std::move(answer));
 }
 
 }  // namespace armwright
