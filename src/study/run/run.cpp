@@ -135,7 +135,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     plan.selection.most = 0;
   }
   const RunFolder folder(request.folder, request.root, plan, request.command_line);
-  if (are_derived_files_there(folder, request.derived)) {
+  if (are_derived_files_there(folder, plan, request.derived)) {
     RunResult result = load_result(folder.path());
     if (request.derived == DerivedFiles::all) {  // a comparison's user did not ask for this cell
       observer.on_message(fmt::format("{}: this run is complete; use --new for another one",
