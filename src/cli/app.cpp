@@ -324,6 +324,8 @@ void add_all_commands(CLI::App& app, Session& session) {
   app.require_subcommand(1);
   add_list(app, session);
   add_optimize(app, session);
+  add_ask(app, session);
+  add_tell(app, session);
   add_compare(app, session);
   add_cell(app, session);
   add_status(app, session);

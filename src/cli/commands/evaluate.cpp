@@ -22,6 +22,7 @@
 #include "cli/views/result_view.hpp"
 #include "problems/config/design_file.hpp"
 #include "problems/config/path_survey.hpp"
+#include "problems/user/user_problem.hpp"
 #include "study/run/derived_files.hpp"
 
 namespace armwright {
@@ -191,6 +192,25 @@ std::string format_text(const EvaluatedDesign& evaluated, const Style& style) {
          format_profile(evaluated, style);
 }
 
+// Returns the problem if it is one of the user's own, without an arm.
+std::optional<LoadedProblem> load_own_problem(const EvaluateOptions& options) {
+  if (options.problem.empty() || !options.overrides.robot.empty()) {
+    return std::nullopt;
+  }
+  try {
+    LoadedProblem problem = load_problem(options.problem, options.overrides.get());
+    if (find_user_description(*problem.problem) != nullptr) {
+      return problem;
+    }
+  } catch (const Error&) {
+    // What an arm's problem lacks may come from the design; load_design_and_problem() says more.
+    if (options.problem.starts_with("exec:")) {
+      throw;
+    }
+  }
+  return std::nullopt;
+}
+
 int run_evaluate(const EvaluateOptions& options, Session& session) {
   if (options.trajectory.empty() != options.trajectory_case.empty()) {
     throw Error(
@@ -203,6 +223,21 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
                 "only one of --json, --csv - and --trajectory - can write to standard output");
   }
   const unsigned jobs = parse_jobs(options.jobs);
+  if (const auto own = load_own_problem(options)) {
+    if (!options.csv.empty() || !options.trajectory.empty() || !options.cases.test_cases.empty()) {
+      throw Error(ErrorKind::usage,
+                  "--csv, --trajectory and --test-cases are for arms; use --json for a problem "
+                  "without an arm");
+    }
+    return evaluate_own(*own,
+                        {.design = options.design,
+                         .cases = options.cases.cases,
+                         .test_set = options.cases.test_set,
+                         .jobs = jobs,
+                         .json = options.json,
+                         .quiet = options.quiet},
+                        session);
+  }
   auto [design, problem] =
       load_design_and_problem(options.design, options.overrides.choose_problem(options.problem),
                               options.overrides.get(), options.quiet);

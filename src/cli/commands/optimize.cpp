@@ -4,8 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
-#include <limits>
 #include <utility>
 
 #include "base/error.hpp"
@@ -13,13 +11,13 @@
 #include "base/text.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/commands/mpi_job.hpp"
+#include "cli/commands/plan_options.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/result_view.hpp"
-#include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/path_survey.hpp"
 #include "study/run/run.hpp"
 #include "study/run/run_folder.hpp"
@@ -49,70 +47,18 @@ and abandons a design that is certain to be worse than 1 times the best. At the 
 validation set and the winner on the test set; the budget does not count these cases. The seed determines the
 optimizer's random numbers; the same seed gives the same result on any number of threads.)";
 
-struct OptimizeOptions {
-  std::string problem;
-  std::string optimizer;
-  std::vector<std::string> opt;
-  std::string seed = "1";
-  std::string budget;
-  std::string schedule;
-  std::string racing;
-  OverrideOptions overrides;
-  std::string validation_cases;
+struct OptimizeOptions : PlanOptions {
   std::string jobs;
   std::string time_limit;
   FolderOptions folder;
   bool json = false;
   bool quiet = false;
-
-  std::vector<std::string> get_overrides() const;
-  std::string get_problem() const;
 };
-
-std::string OptimizeOptions::get_problem() const {
-  const std::string chosen = overrides.choose_problem(problem);
-  if (chosen.empty()) {
-    throw Error(ErrorKind::usage,
-                "PROBLEM is required: name one (armwright list problems), or an arm of your own "
-                "with --robot FILE; 'armwright optimize --help' has examples");
-  }
-  return chosen;
-}
-
-std::vector<std::string> OptimizeOptions::get_overrides() const {
-  std::vector<std::string> all = overrides.get();
-  if (!validation_cases.empty()) {
-    all.push_back(fmt::format("sets.validation_cases={}",
-                              parse_count("--validation-cases", validation_cases, 1, kMostCases)));
-  }
-  return all;
-}
-
-RunPlan make_plan(const OptimizeOptions& options) {
-  RunPlan plan;
-  const char* const variable = std::getenv("ARMWRIGHT_SEED");
-  const bool is_from_variable = variable != nullptr && options.seed == variable;
-  plan.seed = static_cast<std::uint64_t>(
-      parse_count(is_from_variable ? "the environment variable ARMWRIGHT_SEED" : "--seed",
-                  options.seed, 0, std::numeric_limits<std::int64_t>::max()));
-  plan.problem = load_problem(options.get_problem(), options.get_overrides());
-  plan.optimizer =
-      load_optimizer(options.optimizer.empty() ? plan.problem.optimizer : options.optimizer);
-  plan.options = Options::parse(plan.optimizer.name, plan.optimizer.options, options.opt);
-  plan.budget = options.budget.empty()
-                    ? plan.problem.budget
-                    : parse_count("--budget", options.budget, 1, 1'000'000'000'000);
-  plan.schedule = options.schedule.empty() ? choose_schedule(plan.problem, plan.optimizer)
-                                           : parse_schedule(options.schedule);
-  plan.racing = options.racing.empty() ? plan.problem.racing : parse_racing(options.racing);
-  check_plan(plan);
-  return plan;
-}
 
 // Makes the plan of the run and chooses its folder. Returns whether the folder holds a run of version
 // 1.0 on the plain form of a function. Then `options` and the plan get the plain form too.
 bool make_request(OptimizeOptions& options, RunRequest& request) {
-  request.plan = make_plan(options);
+  request.plan = options.make_plan();
   request.folder = options.folder.choose(make_run_name(request.plan));
   if (!needs_plain_form(request.folder, request.plan.problem, options.overrides.set)) {
     return false;
@@ -303,23 +249,7 @@ void add_optimize(CLI::App& app, Session& session) {
       "PROBLEM", options->problem,
       "A problem file, or the name of a shipped problem (armwright list problems); not\n"
       "needed with --robot");
-  command
-      ->add_option("--optimizer,-o", options->optimizer,
-                   "The optimizer (armwright list optimizers; default: the problem's)")
-      ->type_name("NAME");
-  command
-      ->add_option("--opt", options->opt,
-                   "An option of the optimizer, as in population=50; repeatable\n"
-                   "(armwright list optimizers NAME)")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--seed", options->seed, "Seed of the optimizer (default: 1)")
-      ->type_name("N")
-      ->envname("ARMWRIGHT_SEED");
-  command
-      ->add_option("--budget", options->budget,
-                   "Number of training cases to simulate (default: the problem's)")
-      ->type_name("CASES");
+  options->add_to(*command);
   command
       ->add_option("--schedule", options->schedule,
                    "Schedule of the training cases: fresh:K, fixed:K or coevolution:K (default:\n"

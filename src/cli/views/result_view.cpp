@@ -11,6 +11,7 @@
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/views/requirement_view.hpp"
+#include "problems/config/values_file.hpp"
 #include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {
@@ -22,6 +23,7 @@ struct RunFile {
 };
 constexpr RunFile kRunFiles[] = {
     {"winner.toml", "the winner, for evaluate and sweep"},
+    {"winner-record.csv", "signals of the winner on the first test case"},
     {"winner-trajectory.csv", "the winner's trajectory on the first test case"},
     {"front.csv", "the designs on the front, with their results on the validation set"},
     {"result.json", "all numbers of this result"},
@@ -57,6 +59,16 @@ std::string format_vector(const RunResult& result, const std::vector<double>& x,
   return table.format(style, 2);
 }
 
+std::string format_values(const ValuesFile& file, const Style& style) {
+  Table table({{"", false}, {""}, {"", false}});
+  for (const FileValue& one : file.variables) {
+    table.add_row({sanitize(one.quantity.name),
+                   one.word.empty() ? format_significant(one.value, 6) : sanitize(one.word),
+                   sanitize(one.quantity.unit)});
+  }
+  return table.format(style, 2);
+}
+
 std::string format_winner(const RunResult& result, const std::filesystem::path& folder,
                           const Style& style) {
   const Candidate& winner = result.judged[*result.winner].candidate;
@@ -73,6 +85,9 @@ std::string format_winner(const RunResult& result, const std::filesystem::path& 
     return title + format_vector(result, winner.x, style);
   }
   FolderChecksums(folder).check("winner.toml");
+  if (!result.tracking) {
+    return title + format_values(load_values(file), style);
+  }
   return title + format_design(load_design(file.string()), style);
 }
 

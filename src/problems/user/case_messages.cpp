@@ -83,44 +83,6 @@ EvaluationStatus read_status(const json& answer, const std::string& where) {
                   where, quote(status)));
 }
 
-CaseAnswer read_answer(const json& answer, const UserDescription& description,
-                       const std::string& where) {
-  CaseAnswer read;
-  if (answer.is_number() || answer.is_null()) {  // the short form of one objective
-    read.objectives = {read_value(answer, where, description.objectives.front().quantity.name)};
-    check_answer(read, description, where);
-    return read;
-  }
-  if (!answer.is_object()) {
-    throw ProtocolError(
-        fmt::format("sent {} that is no object and no number: {}", where, quote(answer)));
-  }
-  read.status = read_status(answer, where);
-  if (read.status != EvaluationStatus::ok) {
-    read.reason = answer.contains("reason") ? read_text(answer, "reason", where) : "";
-    read.reason = sanitize(read.reason.substr(0, kLongestReason));
-    return read;
-  }
-  const auto name_of = [](const auto& one) -> const std::string& { return one.quantity.name; };
-  read.objectives =
-      read_values(answer, "objectives", std::span(description.objectives), name_of, where);
-  read.constraints =
-      read_values(answer, "constraints", std::span(description.constraints), name_of, where);
-  read.metrics = read_values(
-      answer, "metrics", std::span(description.metrics),
-      [](const Quantity& metric) -> const std::string& { return metric.name; }, where);
-  if (const auto list = answer.find("residuals"); list != answer.end()) {
-    if (!list->is_array()) {
-      throw ProtocolError(
-          fmt::format("sent {} whose \"residuals\" are {}, not a list", where, quote(*list)));
-    }
-    for (const json& value : *list) {
-      read.residuals.push_back(read_value(value, where, "residuals"));
-    }
-  }
-  return read;
-}
-
 void check_id(const json& message, std::uint64_t id) {
   const json& sent = require(message, "id", "an answer");
   if (!sent.is_number_integer() || sent != id) {
@@ -228,6 +190,44 @@ void check_answer(const CaseAnswer& answer, const UserDescription& description,
   check(answer.objectives.size(), description.objectives.size(), "objectives");
   check(answer.constraints.size(), description.constraints.size(), "constraints");
   check(answer.metrics.size(), description.metrics.size(), "metrics");
+}
+
+CaseAnswer read_answer(const json& answer, const UserDescription& description,
+                       const std::string& where) {
+  CaseAnswer read;
+  if (answer.is_number() || answer.is_null()) {  // the short form of one objective
+    read.objectives = {read_value(answer, where, description.objectives.front().quantity.name)};
+    check_answer(read, description, where);
+    return read;
+  }
+  if (!answer.is_object()) {
+    throw ProtocolError(
+        fmt::format("sent {} that is no object and no number: {}", where, quote(answer)));
+  }
+  read.status = read_status(answer, where);
+  if (read.status != EvaluationStatus::ok) {
+    read.reason = answer.contains("reason") ? read_text(answer, "reason", where) : "";
+    read.reason = sanitize(read.reason.substr(0, kLongestReason));
+    return read;
+  }
+  const auto name_of = [](const auto& one) -> const std::string& { return one.quantity.name; };
+  read.objectives =
+      read_values(answer, "objectives", std::span(description.objectives), name_of, where);
+  read.constraints =
+      read_values(answer, "constraints", std::span(description.constraints), name_of, where);
+  read.metrics = read_values(
+      answer, "metrics", std::span(description.metrics),
+      [](const Quantity& metric) -> const std::string& { return metric.name; }, where);
+  if (const auto list = answer.find("residuals"); list != answer.end()) {
+    if (!list->is_array()) {
+      throw ProtocolError(
+          fmt::format("sent {} whose \"residuals\" are {}, not a list", where, quote(*list)));
+    }
+    for (const json& value : *list) {
+      read.residuals.push_back(read_value(value, where, "residuals"));
+    }
+  }
+  return read;
 }
 
 void read_answers(const json& message, const UserDescription& description, std::uint64_t id,

@@ -24,6 +24,10 @@ std::string make_question(const UserDescription& description, const char* type, 
 // may come. Throws ProtocolError.
 void read_answers(const nlohmann::json& message, const UserDescription& description,
                   std::uint64_t id, std::size_t most, std::vector<CaseAnswer>& answers);
+// Reads one answer: an object, or the number of the only objective. Throws ProtocolError, whose
+// message calls the answer `where`.
+CaseAnswer read_answer(const nlohmann::json& answer, const UserDescription& description,
+                       const std::string& where);
 // Reads the message "record". Throws ProtocolError.
 CaseRecord read_record(const nlohmann::json& message, std::uint64_t id);
 

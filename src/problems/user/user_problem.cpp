@@ -75,6 +75,12 @@ class UserProblem final : public Problem {
                                          std::span<const CaseOutcome> outcomes,
                                          std::size_t cases) const override;
 
+  const UserDescription& user_description() const { return program_.description; }
+  Evaluation evaluate_answer(const CaseJob& job, CaseAnswer answer) const {
+    const std::vector<CaseOutcome> outcomes = {make_outcome(job, std::move(answer))};
+    return aggregate(job.x, outcomes);
+  }
+
   std::vector<double> penalty_objectives() const override {
     std::vector<double> penalties;
     for (const UserObjective& objective : program_.description.objectives) {
@@ -355,6 +361,15 @@ bool is_fault_of_program(const CaseOutcome& outcome) {
 
 std::shared_ptr<const Problem> make_user_problem(UserProgram program) {
   return std::make_shared<UserProblem>(std::move(program));
+}
+
+const UserDescription* find_user_description(const Problem& problem) {
+  const auto* user = dynamic_cast<const UserProblem*>(&problem);
+  return user == nullptr ? nullptr : &user->user_description();
+}
+
+Evaluation make_evaluation(const Problem& problem, const CaseJob& job, CaseAnswer answer) {
+  return dynamic_cast<const UserProblem&>(problem).evaluate_answer(job, std::move(answer));
 }
 
 }  // namespace armwright

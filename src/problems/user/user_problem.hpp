@@ -17,5 +17,13 @@ std::shared_ptr<const Problem> make_user_problem(UserProgram program);
 // Returns whether a case failed although its program did not answer that it fails: the program
 // crashed, hung, or answered with a number that is not finite.
 bool is_fault_of_program(const CaseOutcome& outcome);
+// Returns the description that the user gave of a problem that make_user_problem() made; null for
+// other problems. Valid as long as the problem.
+const UserDescription* find_user_description(const Problem& problem);
+
+// Returns the evaluation of a decision vector on the only case of `job.block`, where somebody else
+// has simulated it and hands over the answer. The problem must be one of make_user_problem(). Throws
+// Error{bad_data} if its residuals do not fit its objective.
+Evaluation make_evaluation(const Problem& problem, const CaseJob& job, CaseAnswer answer);
 
 }  // namespace armwright

@@ -8,8 +8,8 @@
 #include "base/error.hpp"
 #include "base/folder_checksums.hpp"
 #include "base/text.hpp"
+#include "process/csv_reader.hpp"
 #include "report/deliverables/datasheet_parts.hpp"
-#include "report/formats/csv_reader.hpp"
 
 namespace armwright {
 namespace {

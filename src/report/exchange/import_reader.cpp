@@ -12,8 +12,8 @@
 #include "base/file.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "process/csv_reader.hpp"
 #include "report/exchange/import.hpp"
-#include "report/formats/csv_reader.hpp"
 #include "report/formats/formats.hpp"
 #include "study/run/json_values.hpp"
 

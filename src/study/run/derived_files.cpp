@@ -12,7 +12,10 @@
 #include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "problems/config/design_file.hpp"
+#include "problems/config/values_file.hpp"
+#include "problems/user/user_problem.hpp"
 #include "study/run/run.hpp"
+#include "study/run/winner_record.hpp"
 
 namespace armwright {
 namespace {
@@ -125,6 +128,23 @@ std::string make_winner_toml(const RunPlan& plan, const RunResult& result,
   return toml;
 }
 
+// Returns the winner of a user's problem, with its objectives on the test set in the user's signs.
+std::string make_values_toml(const RunPlan& plan, const RunResult& result,
+                             const std::vector<double>& x) {
+  const ProblemDescription& problem = plan.problem.problem->description();
+  ValuesFile file;
+  file.title = fmt::format("Winner of {} on {}", plan.optimizer.name, plan.problem.name);
+  file.source = fmt::format("armwright, {} with seed {}; the manifest.json of its run says all",
+                            plan.optimizer.name, plan.seed);
+  file.variables = list_values(problem.variables, x);
+  for (std::size_t i = 0; i < result.test.objectives.size(); ++i) {
+    const UserObjective& own = find_user_description(*plan.problem.problem)->objectives[i];
+    file.objectives.push_back(
+        {own.quantity, own.is_maximised ? -result.test.objectives[i] : result.test.objectives[i]});
+  }
+  return to_toml(file);
+}
+
 // Returns the validation and test records of the result's candidates, numbered as in the result. A
 // run that failed and was started again may have judged designs that are no candidates any more.
 std::vector<EvaluationRecord> select_judgements(const JournalContent& journal,
@@ -176,7 +196,8 @@ std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingRe
   return csv;
 }
 
-bool are_derived_files_there(const RunFolder& folder, DerivedFiles derived) {
+bool are_derived_files_there(const RunFolder& folder, const RunPlan& plan, DerivedFiles derived) {
+  const bool is_own = find_user_description(*plan.problem.problem) != nullptr;
   const auto is_there = [&](const char* name) { return path_exists(folder.path() / name); };
   if (!is_there("result.json")) {
     return false;
@@ -190,12 +211,15 @@ bool are_derived_files_there(const RunFolder& folder, DerivedFiles derived) {
     return false;
   }
   if (derived == DerivedFiles::winner) {
-    return !result.winner || !result.tracking || is_there("winner.toml");
+    return !result.winner || !(result.tracking || is_own) || is_there("winner.toml");
   }
   if (!is_there("convergence.csv") || !is_there("results.sqlite")) {
     return false;
   }
   if (result.objectives.size() > 1 && !is_there("front.csv")) {
+    return false;
+  }
+  if (result.winner && is_own && !are_record_files_there(folder, plan)) {
     return false;
   }
   return !result.winner || !result.tracking ||
@@ -209,6 +233,12 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
   const bool all = derived == DerivedFiles::all;
   std::vector<std::string> changing = derived_file_names();
   changing.emplace_back("journal");
+  const auto covered = FolderChecksums(files).lines();
+  for (const auto& [name, hash] : covered) {
+    if (name.starts_with(kWinnerFiles)) {
+      changing.push_back(name);
+    }
+  }
   FolderChecksums(files).drop(changing);
   if (all) {
     write_convergence_csv(files, plan.problem.problem->description(), journal.training);
@@ -227,6 +257,13 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
           tracking.track(tracking.make_design(x), tracking.get_set(plan.problem.sets.test), 0,
                          {.error_series = false, .trajectory = true});
       write_file_atomically(files, "winner-trajectory.csv", make_trajectory_csv(tracking, motion));
+    }
+  }
+  if (result.winner && find_user_description(*plan.problem.problem) != nullptr) {
+    const auto& x = result.judged[*result.winner].candidate.x;
+    write_file_atomically(files, "winner.toml", make_values_toml(plan, result, x));
+    if (all && has_record(plan)) {
+      write_record_files(files, plan, x);
     }
   }
   before_last();

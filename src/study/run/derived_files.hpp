@@ -24,7 +24,7 @@ std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingRe
 
 // Returns whether the folder has a result and all files that write_derived_files() would write for
 // it, and their checksums if the run has begun with them. Throws Error{bad_data} if result.json is damaged.
-bool are_derived_files_there(const RunFolder& folder, DerivedFiles derived);
+bool are_derived_files_there(const RunFolder& folder, const RunPlan& plan, DerivedFiles derived);
 
 // Writes the derived files, and result.json last: where it exists, all others exist. Calls
 // `before_last` right before it. Then covers all files of the run with checksums. Throws Error{io}.

@@ -48,6 +48,13 @@ double get_number(const TrackingResult& result) {
 }  // namespace
 
 const TrackingProblem& require_tracking(const LoadedProblem& problem) {
+  if (problem.tracking() == nullptr && !problem.program.empty()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("problem '{}' is one of your own and has no arm. 'armwright evaluate "
+                            "winner.toml --problem {}' evaluates its designs, and 'armwright "
+                            "report' shows its runs",
+                            problem.name, problem.program));
+  }
   if (problem.tracking() == nullptr) {
     throw Error(
         ErrorKind::usage,

@@ -138,7 +138,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     plan.selection.most = 0;
   }
   const RunFolder folder(request.folder, request.root, plan, request.command_line);
-  if (are_derived_files_there(folder, request.derived)) {
+  if (are_derived_files_there(folder, plan, request.derived)) {
     RunResult result = load_result(folder.path());
     if (request.derived == DerivedFiles::all) {  // a comparison's user did not ask for this cell
       observer.on_message(fmt::format("{}: this run is complete; use --new for another one",
@@ -164,6 +164,11 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   }
   CaseExecutor& executor = request.executor != nullptr ? *request.executor : *threads;
   RunEvaluator evaluator(plan, executor, stop, journal, recorded, observer);
+  if (request.ask) {
+    evaluator.ask_instead([&](std::span<const EvaluationRecord* const> missing) {
+      request.ask(folder.folder(), missing);
+    });
+  }
   RunResult result = make_result(plan);
   optimizer->log_to(folder.log());
   try {
@@ -189,8 +194,13 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   result.counts = evaluator.counts();
   result.first_failure = evaluator.first_failure();
   result.least_violation = evaluator.least_violation();
-  if (!select_winner(plan, evaluator.select_candidates(), recorded, executor, stop, journal,
-                     observer, result)) {
+  RecordedEvaluations training;
+  if (plan.problem.problem->description().has_single_case) {
+    journal.flush();
+    training = read_journal(folder.journal()).training;
+  }
+  if (!select_winner(plan, evaluator.select_candidates(), recorded, training, executor, stop,
+                     journal, observer, result)) {
     journal.close();
     add_time();
     return std::nullopt;

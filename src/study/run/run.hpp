@@ -4,7 +4,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,11 @@ struct RunRequest {
   DerivedFiles derived = DerivedFiles::all;
   CaseExecutor* executor = nullptr;  // used instead of `jobs` threads of its own, if set
   std::filesystem::path root = {};   // that the user named and that holds `folder`; empty: `folder`
+  // If set, nothing is simulated. The function gets the training evaluations that the optimizer asks
+  // for and that the journal lacks, while this process has the run's lock, and must request the
+  // stop. See ask_tell.hpp.
+  std::function<void(const Folder& folder, std::span<const EvaluationRecord* const> missing)> ask =
+      {};
 };
 
 // Returns the result, or nothing if `stop` ended the run early; all finished evaluations are in the

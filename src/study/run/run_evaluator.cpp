@@ -340,6 +340,16 @@ void RunEvaluator::count_replayed(Batch& batch) {
 }
 
 void RunEvaluator::simulate(Batch& batch, const std::vector<std::size_t>& missing) {
+  if (ask_) {
+    std::vector<const EvaluationRecord*> requests;
+    for (const std::size_t i : missing) {
+      requests.push_back(&batch.records[i]);
+    }
+    if (!requests.empty()) {
+      ask_(requests);
+    }
+    return;
+  }
   std::vector<std::span<const double>> candidates;
   for (const std::size_t i : missing) {
     candidates.emplace_back(batch.records[i].x);

@@ -7,8 +7,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "optimizers/interface/evaluator.hpp"
@@ -28,6 +31,12 @@ class RunEvaluator final : public Evaluator {
   // All references must outlive the evaluator, except `recorded`, the journal's content.
   RunEvaluator(const RunPlan& plan, CaseExecutor& executor, StopSignal& stop, Journal& journal,
                const JournalContent& recorded, RunObserver& observer);
+
+  // Receives the training evaluations of one batch that the journal lacks: requests without answers.
+  using Ask = std::function<void(std::span<const EvaluationRecord* const> missing)>;
+  // From now on, calls `ask` where candidates would be simulated, and then ends the search as a stop
+  // does. The plan must have no racing.
+  void ask_instead(Ask ask) { ask_ = std::move(ask); }
 
   // Returns the problem as the optimizer can treat it.
   const ProblemDescription& problem() const override { return treated_.description(); }
@@ -96,6 +105,7 @@ class RunEvaluator final : public Evaluator {
   Journal& journal_;
   RunObserver& observer_;
   const TreatedProblem treated_;
+  Ask ask_;  // empty if candidates are simulated
   const RecordedEvaluations recorded_;
   bool budget_spent_ = false;
   bool stopped_ = false;

@@ -18,6 +18,9 @@
 #include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "optimizers/table/optimizer_table.hpp"
+#include "problems/config/problem_loader.hpp"
+#include "problems/interface/schedule.hpp"
 #include "sim/simd/simd_level.hpp"
 
 namespace armwright {
@@ -249,9 +252,13 @@ void RunFolder::check_writable() const {
 
 const std::vector<std::string>& derived_file_names() {
   static const std::vector<std::string> names = {
-      "result.json",           "winner.toml",    "front.csv", "convergence.csv",
-      "winner-trajectory.csv", "results.sqlite", "cell.json"};
+      "result.json",           "winner.toml",       "front.csv",      "convergence.csv",
+      "winner-trajectory.csv", "winner-record.csv", "results.sqlite", "cell.json"};
   return names;
+}
+
+bool is_derived_file(const std::string& name) {
+  return std::ranges::count(derived_file_names(), name) > 0 || name.starts_with(kWinnerFiles);
 }
 
 void cover_run(const Folder& folder, bool has_ended) {
@@ -290,6 +297,43 @@ bool needs_plain_form(const std::filesystem::path& folder, const LoadedProblem& 
   const json recorded = find(read_manifest(folder / "manifest.json"), "/configuration/problem");
   return find(recorded, "/function/name") == problem.function->name &&
          find(recorded, "/function/instance").is_null();
+}
+
+RunPlan load_recorded_plan(const std::filesystem::path& folder) {
+  const auto file = folder / "manifest.json";
+  if (!path_exists(file)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: is not the folder of a run (it has no manifest.json)",
+                            sanitize(folder.string())));
+  }
+  const json manifest = read_manifest(file);
+  RunPlan plan;
+  try {
+    const json& configuration = manifest.at("configuration");
+    const json& run = configuration.at("run");
+    plan.problem = load_recorded_problem(configuration.at("problem").dump(), "problem", folder);
+    plan.optimizer = load_optimizer(run.at("optimizer").get<std::string>());
+    std::vector<std::string> options;
+    for (const auto& [name, value] : run.at("options").items()) {
+      options.push_back(name + "=" + (value.is_string() ? value.get<std::string>() : value.dump()));
+    }
+    plan.options = Options::parse(plan.optimizer.name, plan.optimizer.options, options);
+    plan.seed = run.at("seed").get<std::uint64_t>();
+    plan.budget = run.at("budget").get<std::int64_t>();
+    const auto kind = find_schedule_kind(run.at("schedule").at("kind").get<std::string>());
+    plan.schedule = {.kind = kind.value_or(Schedule::Kind::fixed),
+                     .cases = run.at("schedule").at("cases").get<int>()};
+    const json& selection = run.at("selection");
+    plan.selection = {.last = selection.at("last").get<int>(),
+                      .best = selection.at("best").get<int>(),
+                      .most = selection.value("most", 0),
+                      .evaluated_only = selection.value("evaluated_only", false)};
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not a manifest that armwright wrote ({})",
+                            sanitize(file.string()), describe_json_error(error.what())));
+  }
+  return plan;
 }
 
 std::filesystem::path choose_run_folder(const std::filesystem::path& parent,

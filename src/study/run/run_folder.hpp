@@ -60,6 +60,12 @@ class RunFolder {
 // cell.
 const std::vector<std::string>& derived_file_names();
 
+// Where a run keeps the files that its winner's test case left (winner_record.hpp). Their names
+// depend on the problem.
+inline constexpr const char* kWinnerFiles = "winner-files/";
+// Returns whether a file, named relative to the run's folder, is derived from the journal.
+bool is_derived_file(const std::string& name);
+
 // Covers all files of a run that are complete: the manifest, the derived files and, if the run has
 // ended, the journal. Throws Error{io}.
 void cover_run(const Folder& folder, bool has_ended);
@@ -78,6 +84,11 @@ inline constexpr const char* kPlainForm = "function.instance=0";
 // Error{bad_data} if the manifest is damaged, and Error{io}.
 bool needs_plain_form(const std::filesystem::path& folder, const LoadedProblem& problem,
                       std::span<const std::string> settings);
+
+// Returns the plan that the run in the folder has recorded, for a run without racing. Loads plugins,
+// and starts no program of a problem. Throws Error{usage} if the folder is not a run's, Error{bad_data}
+// if the manifest is damaged, and what loading the problem and the optimizer throws.
+RunPlan load_recorded_plan(const std::filesystem::path& folder);
 
 // Returns parent/NAME or, with `fresh`, the first of NAME, NAME-002, NAME-003, ... that does not
 // exist.

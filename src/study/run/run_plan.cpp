@@ -167,6 +167,9 @@ std::string to_json(const RunPlan& plan) {
   if (plan.selection.most > 0) {  // absent in plans of version 1.0
     run["selection"]["most"] = plan.selection.most;
   }
+  if (plan.selection.evaluated_only) {
+    run["selection"]["evaluated_only"] = true;
+  }
   if (plan.racing.kind != Racing::Kind::none) {  // as in plans from versions without racing
     run["racing"] = to_text(plan.racing);
   }

@@ -23,6 +23,9 @@ struct Selection {
   // there are more, the oldest of the last ones lose their places. 0 is the rule of version 1.0: no
   // such limit, and recommendations after the end of the budget do not count.
   int most = 45;
+  // Whether recommended decision vectors that were never evaluated are not judged. This holds for
+  // ask and tell, where a person or another system makes each evaluation.
+  bool evaluated_only = false;
 
   bool operator==(const Selection&) const = default;
 };

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <span>
@@ -27,13 +29,54 @@ bool same_request(const EvaluationRecord& record, std::span<const double> x,
          record.cases.numbers == block.numbers && same_bits(record.x, x);
 }
 
+// Returns the first training evaluation of each design, made a judgement of the same case; nothing
+// for a design that has none. Judgements know no penalties: a failed case is a case without an error.
+std::vector<std::optional<Evaluation>> find_evaluated(
+    const std::vector<std::vector<double>>& designs, const RecordedEvaluations& training) {
+  std::vector<std::optional<Evaluation>> found(designs.size());
+  std::size_t missing = designs.size();
+  for (auto record = training.begin(); missing > 0 && record != training.end(); ++record) {
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+      if (found[i] || !same_bits(record->x, designs[i])) {
+        continue;
+      }
+      Evaluation& evaluation = found[i].emplace(record->evaluation);
+      evaluation.residuals.clear();
+      evaluation.jacobian.clear();
+      if (evaluation.objectives.empty()) {
+        evaluation.failed_cases = static_cast<int>(evaluation.case_errors.size());
+        std::ranges::fill(evaluation.case_errors, std::numeric_limits<double>::quiet_NaN());
+      }
+      --missing;
+    }
+  }
+  return found;
+}
+
+std::vector<std::vector<double>> list_designs(const std::vector<Candidate>& candidates) {
+  std::vector<std::vector<double>> designs;
+  for (const Candidate& candidate : candidates) {
+    designs.push_back(candidate.x);
+  }
+  return designs;
+}
+
+// Removes the candidates that have no training evaluation.
+void drop_unevaluated(const RecordedEvaluations& training, std::vector<Candidate>& candidates) {
+  const auto found = find_evaluated(list_designs(candidates), training);
+  std::size_t i = 0;
+  std::erase_if(candidates, [&](const Candidate&) { return !found[i++]; });
+}
+
 // Evaluates designs on validation and test cases, with the journal as a cache.
 class JournalledEvaluation {
  public:
-  JournalledEvaluation(const RunPlan& plan, const JournalContent& recorded, CaseExecutor& executor,
+  JournalledEvaluation(const RunPlan& plan, const JournalContent& recorded,
+                       const RecordedEvaluations& training, CaseExecutor& executor,
                        StopSignal& stop, Journal& journal, RunObserver& observer)
       : plan_(plan),
         recorded_(recorded),
+        training_(training),
         executor_(executor),
         stop_(stop),
         journal_(journal),
@@ -74,31 +117,82 @@ class JournalledEvaluation {
     observer_.on_progress(progress);
     std::mutex mutex;
     std::size_t done = 0;
+    const auto finish = [&](std::size_t design, Evaluation evaluation) {
+      EvaluationRecord record;
+      record.index = design;
+      record.x = designs[design];
+      record.cases = block;
+      record.evaluation = std::move(evaluation);
+      journal_.append(record);
+      evaluations[design] = std::move(record.evaluation);
+      const std::lock_guard lock(mutex);
+      ++done;
+      progress.done += block.numbers.size();
+      observer_.on_progress(progress);
+    };
+    const std::size_t wanted = missing.size();
+    if (is_same_case(block)) {
+      take_evaluated(designs, missing, candidates, finish);
+    }
     executor_.evaluate(*plan_.problem.problem, candidates, block, {}, stop_,
                        [&](std::size_t candidate, Evaluation evaluation) {
-                         EvaluationRecord record;
-                         record.index = missing[candidate];
-                         record.x = designs[record.index];
-                         record.cases = block;
-                         record.evaluation = std::move(evaluation);
-                         journal_.append(record);
-                         evaluations[record.index] = std::move(record.evaluation);
-                         const std::lock_guard lock(mutex);
-                         ++done;
-                         progress.done += block.numbers.size();
-                         observer_.on_progress(progress);
+                         finish(missing[candidate], std::move(evaluation));
                        });
     journal_.flush();
-    return done == missing.size() ? std::optional(std::move(evaluations)) : std::nullopt;
+    if (done < wanted) {
+      return std::nullopt;
+    }
+    if (is_same_case(block)) {
+      judged_designs_ = designs;
+      judgements_ = evaluations;
+    }
+    return evaluations;
   }
 
  private:
+  // Returns whether a training evaluation has the outcome of this block.
+  bool is_same_case(const CaseBlock& block) const {
+    return plan_.problem.problem->description().has_single_case && block.numbers.size() == 1;
+  }
+
+  // Finishes the missing designs that have a training evaluation or a judgement. Leaves the others.
+  void take_evaluated(const std::vector<std::vector<double>>& designs,
+                      std::vector<std::size_t>& missing,
+                      std::vector<std::span<const double>>& candidates,
+                      const std::function<void(std::size_t, Evaluation)>& finish) const {
+    std::vector<std::vector<double>> wanted;
+    for (const std::size_t design : missing) {
+      wanted.push_back(designs[design]);
+    }
+    auto found = find_evaluated(wanted, training_);
+    std::vector<std::size_t> left;
+    candidates.clear();
+    for (std::size_t i = 0; i < missing.size(); ++i) {
+      const auto judged = std::ranges::find_if(
+          judged_designs_, [&](const auto& x) { return same_bits(x, wanted[i]); });
+      if (!found[i] && judged != judged_designs_.end()) {
+        found[i] = judgements_[static_cast<std::size_t>(judged - judged_designs_.begin())];
+      }
+      if (found[i]) {
+        finish(missing[i], std::move(*found[i]));
+      } else {
+        left.push_back(missing[i]);
+        candidates.emplace_back(designs[missing[i]]);
+      }
+    }
+    missing = std::move(left);
+  }
+
   const RunPlan& plan_;
   const JournalContent& recorded_;
+  const RecordedEvaluations& training_;
   CaseExecutor& executor_;
   StopSignal& stop_;
   Journal& journal_;
   RunObserver& observer_;
+  // Of a problem with a single case: what was judged on the validation set.
+  std::vector<std::vector<double>> judged_designs_;
+  std::vector<Evaluation> judgements_;
 };
 
 }  // namespace
@@ -121,14 +215,15 @@ std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
 }
 
 bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
-                   const JournalContent& recorded, CaseExecutor& executor, StopSignal& stop,
-                   Journal& journal, RunObserver& observer, RunResult& result) {
+                   const JournalContent& recorded, const RecordedEvaluations& training,
+                   CaseExecutor& executor, StopSignal& stop, Journal& journal,
+                   RunObserver& observer, RunResult& result) {
   const CaseSets& sets = plan.problem.sets;
-  JournalledEvaluation evaluation(plan, recorded, executor, stop, journal, observer);
-  std::vector<std::vector<double>> designs;
-  for (const Candidate& candidate : candidates) {
-    designs.push_back(candidate.x);
+  JournalledEvaluation evaluation(plan, recorded, training, executor, stop, journal, observer);
+  if (plan.selection.evaluated_only) {
+    drop_unevaluated(training, candidates);
   }
+  const std::vector<std::vector<double>> designs = list_designs(candidates);
   auto validated = evaluation.evaluate(
       designs, make_block(CaseRole::validation, sets.validation, sets.validation_cases));
   if (!validated) {

@@ -23,11 +23,14 @@ std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
 
 // Evaluates the candidates and sets `judged`, `winner`, `test` and `test_summary` of the result.
 // Takes evaluations from `recorded` where the journal has them, and appends the others to
-// `journal`. Returns false if it was stopped; the result is incomplete then. Throws Error{bad_data}
+// `journal`. `training` holds all training evaluations of the run: if the problem has a single
+// case, they are the judgements of the decision vectors that they have, and only others are
+// simulated. Returns false if it was stopped; the result is incomplete then. Throws Error{bad_data}
 // if the recorded run has ended but lacks an evaluation, and Error{io} if the journal cannot be
 // written.
 bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
-                   const JournalContent& recorded, CaseExecutor& executor, StopSignal& stop,
-                   Journal& journal, RunObserver& observer, RunResult& result);
+                   const JournalContent& recorded, const RecordedEvaluations& training,
+                   CaseExecutor& executor, StopSignal& stop, Journal& journal,
+                   RunObserver& observer, RunResult& result);
 
 }  // namespace armwright

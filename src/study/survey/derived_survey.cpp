@@ -14,6 +14,7 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "problems/config/design_file.hpp"
+#include "problems/config/values_file.hpp"
 
 namespace armwright {
 namespace {
@@ -153,6 +154,10 @@ std::string find_toml_fault(const std::filesystem::path& file) {
 std::string find_design_fault(const std::filesystem::path& file) {
   // An absolute path cannot be mistaken for the name of a shipped design.
   return catch_fault([&] { load_design(std::filesystem::absolute(file).string()); });
+}
+
+std::string find_values_fault(const std::filesystem::path& file) {
+  return catch_fault([&] { load_values(file); });
 }
 
 std::string find_database_fault(const std::filesystem::path& file, const RunResult& result) {

@@ -27,6 +27,7 @@ std::string find_csv_fault(const std::filesystem::path& file,
 std::string find_json_fault(const std::filesystem::path& file);
 std::string find_toml_fault(const std::filesystem::path& file);
 std::string find_design_fault(const std::filesystem::path& file);
+std::string find_values_fault(const std::filesystem::path& file);
 // Runs SQLite's own check and compares the numbers of evaluations with those of `result`.
 std::string find_database_fault(const std::filesystem::path& file, const RunResult& result);
 

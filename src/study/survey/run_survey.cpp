@@ -293,10 +293,11 @@ class RunSurveyor {
         }
       }
     };
-    check("winner.toml", find_design_fault);
+    check("winner.toml", result.tracking ? find_design_fault : find_values_fault);
     const auto find_row_fault = [](const auto& file) { return find_csv_fault(file); };
     check("front.csv", find_row_fault);
     check("winner-trajectory.csv", find_row_fault);
+    check("winner-record.csv", find_row_fault);
     // If a failed run is tried again, its journal may have more evaluations than its result.
     const bool is_known =
         survey_.journal && !survey_.journal->is_damaged() && result.failure.empty();
@@ -389,7 +390,7 @@ class RunSurveyor {
         add(Finding::Kind::loss, name, change);
       } else if (!survey_.writer.empty()) {
         continue;  // the process may be replacing it
-      } else if (std::ranges::count(derived_file_names(), name) > 0) {
+      } else if (is_derived_file(name)) {
         add_damaged_file(name, change);
       } else {
         add(Finding::Kind::damage, name, change);
@@ -399,7 +400,7 @@ class RunSurveyor {
       if (std::ranges::count(survey_.findings, std::filesystem::path(name), &Finding::file) > 0) {
         continue;
       }
-      if (std::ranges::count(derived_file_names(), name) > 0) {
+      if (is_derived_file(name)) {
         if (survey_.writer.empty()) {
           add(Finding::Kind::note, name,
               "it is missing; the command that began the run makes it again");

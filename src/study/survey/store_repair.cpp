@@ -155,7 +155,7 @@ class Repair {
 
   void copy_of_run(const RunSurvey& run, const fs::path& from, const std::string& name,
                    RunRepair& done) {
-    const bool is_derived = std::ranges::count(derived_file_names(), name) > 0;
+    const bool is_derived = is_derived_file(name);
     const bool is_damaged = std::ranges::count(run.damaged_files, name) > 0;
     const bool is_journal = name == "journal" && run.is_journal_damaged();
     if (is_damaged || is_journal) {

@@ -1,4 +1,4 @@
-#include "report/formats/csv_reader.hpp"
+#include "process/csv_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "report/formats/csv_reader.hpp"
+#include "process/csv_reader.hpp"
 
 #include "base/error.hpp"
 #include "base/text.hpp"

@@ -1,0 +1,103 @@
+// A problem of a user for tests, which this process answers itself: minimise (a - 1)^2 + n^2 with
+// a + n <= 3.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "problems/config/problem_loader.hpp"
+#include "problems/user/user_problem.hpp"
+
+namespace armwright {
+
+// Counts what was simulated.
+struct OwnProblemCounts {
+  std::mutex mutex;
+  std::multiset<std::vector<double>> points;
+};
+
+inline CaseAnswer answer_own(std::span<const double> x) {
+  CaseAnswer answer;
+  if (x[0] < -3) {
+    answer.status = EvaluationStatus::failed;
+    answer.reason = "the motor stalled";
+    return answer;
+  }
+  answer.objectives = {(x[0] - 1) * (x[0] - 1) + x[1] * x[1]};
+  answer.constraints = {x[0] + x[1]};
+  answer.metrics = {x[0] * x[1]};
+  return answer;
+}
+
+class OwnServer final : public CaseServer {
+ public:
+  explicit OwnServer(std::shared_ptr<OwnProblemCounts> counts) : counts_(std::move(counts)) {}
+  std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
+    std::vector<CaseAnswer> answers;
+    for (const CaseJob& job : jobs) {
+      const std::lock_guard lock(counts_->mutex);
+      counts_->points.insert({job.x.begin(), job.x.end()});
+      answers.push_back(answer_own(job.x));
+    }
+    return answers;
+  }
+  CaseRecord record(const CaseJob& job) override {
+    CaseRecord record;
+    record.abscissa = {"time", "s"};
+    record.abscissa_values = {0, 0.5};
+    record.series = {{{"speed", "rad/s"}, {job.x[0], job.x[1]}}};
+    record.files = {{"note.txt", "the best\n"}};
+    return record;
+  }
+
+ private:
+  std::shared_ptr<OwnProblemCounts> counts_;
+};
+
+inline UserDescription describe_own() {
+  UserDescription description;
+  description.name = "own";
+  DecisionVariable a;
+  a.name = "a";
+  a.unit = "V";
+  a.lower = -4;
+  a.upper = 4;
+  a.start = 2;
+  DecisionVariable n = a;
+  n.name = "n";
+  n.type = VariableType::integer;
+  description.variables = {a, n};
+  UserObjective loss;
+  loss.quantity = {"loss", "W"};
+  description.objectives = {loss};
+  description.constraints = {{.quantity = {"sum", "V"}, .limit = 3}};
+  description.metrics = {{"product", "V"}};
+  return description;
+}
+
+// Without `counts`, the problem cannot be simulated.
+inline LoadedProblem make_own_problem(UserDescription description,
+                                      const std::shared_ptr<OwnProblemCounts>& counts) {
+  LoadedProblem loaded;
+  loaded.name = description.name;
+  loaded.sets = {.validation_cases = static_cast<int>(description.validation_cases),
+                 .test_cases = static_cast<int>(description.test_cases),
+                 .training_cases = description.training_cases};
+  loaded.schedule = {.kind = Schedule::Kind::fixed, .cases = 1};
+  loaded.resolved_json = R"({"kind": "program"})";
+  UserProgram program{.name = "own",
+                      .description = std::move(description),
+                      .start = {},
+                      .why_not = "it is computed elsewhere"};
+  if (counts) {
+    program.start = [counts] { return std::make_unique<OwnServer>(counts); };
+  }
+  loaded.problem = make_user_problem(std::move(program));
+  return loaded;
+}
+
+}  // namespace armwright
