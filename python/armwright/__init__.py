@@ -6,7 +6,8 @@
     >>> run.summary["mean"]                            # metres, on the test set
 
 Problem.evaluate() evaluates points. Problem.evaluate_design() judges a design. To write an optimizer, derive a class from Optimizer.
-compare() compares optimizers. docs/python.md describes all of this. The results are the same as those of the program `armwright`, bit for bit.
+For a problem of your own, derive one from UserProblem, or call make_problem(). compare() compares optimizers. docs/python.md describes all of
+this. The results are the same as those of the program `armwright`, bit for bit.
 """
 
 try:
@@ -23,32 +24,43 @@ from .progress import Progress
 from .run import History, Run, load_run, optimize
 from .server import serve
 from .study import Study, compare, load_study
+from .user_problem import Answer, Case, Category, Constraint, Failed, Integer, Objective, Real, Record, UserProblem, make_problem
 
 __version__: str = _armwright.version()
 
 __all__ = [
+    "Answer",
     "ArmwrightWarning",
     "BadDataError",
     "BusyError",
     "CAPABILITIES",
+    "Case",
+    "Category",
+    "Constraint",
     "Description",
     "DesignEvaluation",
     "Error",
     "Evaluations",
     "Evaluator",
+    "Failed",
     "Finding",
     "History",
+    "Integer",
     "IoError",
+    "Objective",
     "Optimizer",
     "OptimizerInfo",
     "Option",
     "Problem",
     "Progress",
     "Quantity",
+    "Real",
+    "Record",
     "Run",
     "Scores",
     "Study",
     "UsageError",
+    "UserProblem",
     "Variable",
     "check_optimizer",
     "compare",
@@ -57,6 +69,7 @@ __all__ = [
     "load_problem",
     "load_run",
     "load_study",
+    "make_problem",
     "optimize",
     "optimizers",
     "serve",

@@ -39,7 +39,7 @@ class Quantity:
     """A measured quantity and its unit ("" if it has none)."""
 
     name: str
-    unit: str
+    unit: str = ""
 
 
 def _restore_shape(matrix: FloatArray, given: npt.ArrayLike) -> FloatArray:

@@ -18,7 +18,6 @@ from . import _armwright
 from ._values import FloatArray, MaskedFloats, to_masked, to_masked_matrices, to_options, to_points
 from .description import Description
 from .errors import UsageError
-from .problem import STATUSES
 
 OptionValue = Union[bool, int, float, str]
 CAPABILITIES = ("bounds", "constraints", "multi_objective", "batch", "noisy", "residuals", "stochastic", "generations", "local", "sampling",
@@ -122,7 +121,7 @@ class Scores:
     @property
     def status(self) -> npt.NDArray[np.str_]:
         """The texts of Evaluations.status, and "abandoned" for a candidate that lost a race."""
-        return np.array(STATUSES)[self._status]
+        return np.array(_armwright.STATUSES)[self._status]
 
     @property
     def violations(self) -> FloatArray:
@@ -298,12 +297,11 @@ def read_optimizer(optimizer: Union[Optimizer, type[Optimizer]]) -> PythonOptimi
     unknown = sorted(set(cls.capabilities) - set(CAPABILITIES))
     if unknown:
         raise UsageError(f"{cls.__name__} has the capability {unknown[0]!r}; it must be among {', '.join(CAPABILITIES)}")
-    doc = (inspect.cleandoc(cls.__doc__).splitlines() or [""])[0] if cls.__doc__ else ""
     description = {
         "type": "description",
         "protocol": 1,
         "name": name,
-        "summary": optimizer.summary or doc or f"The class {cls.__name__}",
+        "summary": optimizer.summary or first_line_of_doc(cls) or f"The class {cls.__name__}",
         "source": optimizer.source,
         "capabilities": [one for one in CAPABILITIES if one in set(cls.capabilities)],
         "options": [option.describe() for option in cls.options],
@@ -353,22 +351,29 @@ def _hash(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def hash_class(cls: type) -> str:
-    """Returns the SHA-256 of the source text of a class and its base classes, up to Optimizer; without source text, of the byte code."""
+def first_line_of_doc(documented: Any) -> str:
+    """Returns the first line of the docstring, "" if there is none."""
+    doc = getattr(documented, "__doc__", None)
+    return (inspect.cleandoc(doc).splitlines() or [""])[0] if isinstance(doc, str) else ""
+
+
+def hash_class(cls: type, last: type = Optimizer, without: Sequence[str] = ()) -> str:
+    """Returns the SHA-256 of the source text of a class and its base classes, up to `last`; without source text, of the byte code."""
     parts = []
     for one in cls.__mro__:
-        if one is Optimizer:
+        if one is last:
             break
         for name, member in sorted(vars(one).items()):
-            parts.append(f"{one.__qualname__}.{name} {_describe_member(member)}")
+            if name not in without:
+                parts.append(f"{one.__qualname__}.{name} {describe_member(member)}")
     return _hash("\n".join(parts))
 
 
-def _describe_member(member: Any) -> str:
+def describe_member(member: Any) -> str:
     if isinstance(member, (staticmethod, classmethod)):
         member = member.__func__
     if isinstance(member, property):
-        return " ".join(_describe_member(one) for one in (member.fget, member.fset, member.fdel) if one is not None)
+        return " ".join(describe_member(one) for one in (member.fget, member.fset, member.fdel) if one is not None)
     if isinstance(member, types.FunctionType):
         try:
             return inspect.getsource(member)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Optional, Sequence, Union, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,7 @@ from ._values import (FloatArray, MaskedFloats, Settings, quote_words, to_jobs, 
 from .description import Description
 from .errors import UsageError
 from .progress import Listener, Show
+from .user_problem import AnyUserProblem, PythonProblem, UserProblem, enter_worker, is_user_problem
 
 STATUSES: tuple[str, ...] = _armwright.STATUSES
 _MOST_CASES = 1_000_000
@@ -306,8 +307,17 @@ class Problem(Description):
         return int(count) if kind == "fixed" else int(self._content["fixed_cases"])
 
 
+def _load_own(problem: AnyUserProblem, settings: list[str]) -> Problem:
+    own = PythonProblem(problem)
+    time_limit_s, memory_mib = float(own.problem.time_limit_s), float(own.problem.memory_mib)
+    limits = {"program.time_limit_s": (time_limit_s, UserProblem.time_limit_s), "program.memory_mib": (memory_mib, UserProblem.memory_mib)}
+    changed = [f"{key}={value!r}" for key, (value, usual) in limits.items() if value != usual]
+    return Problem(_armwright.load_python_problem(own.full_name, own.text, own.answer, enter_worker, time_limit_s, memory_mib,
+                                                  bool(own.problem.isolate), own.is_batched, changed + settings))
+
+
 def load_problem(
-    name: Union[None, str, Path] = None,
+    name: Union[None, str, Path, AnyUserProblem] = None,
     *,
     set: Optional[Settings] = None,
     robot: Union[None, str, Path] = None,
@@ -318,8 +328,8 @@ def load_problem(
 
     Parameters
     ----------
-    name : str or path, optional
-        A shipped problem (list_problems()) or a TOML file. With `robot`, the default is the problem for any arm, "robot".
+    name : str, path, UserProblem or class derived from it, optional
+        A shipped problem (list_problems()), a TOML file, or a problem of your own. With `robot`, the default is the problem for any arm, "robot".
     set : mapping or list of str, optional
         Settings to change, as with --set of the program: {"physics.engine": "articulated", "task.load_kg": 20}, or KEY=VALUE texts.
     robot, base, tip : str, optional
@@ -332,6 +342,10 @@ def load_problem(
     (1,)
     """
     settings = to_settings(set)
+    if is_user_problem(name):
+        if not robot is base is tip is None:
+            raise UsageError("robot, base and tip describe an arm; a problem of your own has none")
+        return _load_own(cast(AnyUserProblem, name), settings)
     if robot is not None:
         settings.append(f"robot.urdf={quote_words(str(Path(_armwright.resolve_config('robots', str(robot))).absolute()))}")
     for key, link in (("base", base), ("tip", tip)):

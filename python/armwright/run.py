@@ -18,6 +18,7 @@ from .errors import BadDataError, UsageError
 from .optimizer import AnyOptimizer, to_row
 from .problem import STATUSES, Problem, load_problem
 from .progress import Listener, Show
+from .user_problem import AnyUserProblem
 
 _LARGEST_SEED = 2**63 - 1
 
@@ -186,8 +187,8 @@ def _own_command() -> list[str]:
 
 
 def _make_command(problem: Problem, optimizer: AnyOptimizer, settings: dict[str, Optional[str]], options: list[str]) -> list[str]:
-    """Returns the command that continues the run. The program can do this if the optimizer is one of its own."""
-    if not isinstance(optimizer, str):
+    """Returns the command that continues the run. The program can do this if neither optimizer nor problem is a class."""
+    if not isinstance(optimizer, str) or problem._inner.is_python:
         return _own_command()
     words = ["armwright", "optimize", problem._inner.asked_name, "--optimizer", optimizer]
     for setting in problem._inner.settings:
@@ -201,7 +202,7 @@ def _make_command(problem: Problem, optimizer: AnyOptimizer, settings: dict[str,
 
 
 def optimize(
-    problem: Union[Problem, str, Path],
+    problem: Union[Problem, AnyUserProblem, str, Path],
     optimizer: Optional[AnyOptimizer] = None,
     *,
     seed: int = 1,
@@ -222,8 +223,8 @@ def optimize(
 
     Parameters
     ----------
-    problem : Problem, str or path
-        The problem, or its name; with a name, `set` may change its settings.
+    problem : Problem, UserProblem, class derived from it, str or path
+        The problem, or its name; with a class or a name, `set` may change its settings.
     optimizer : str, Optimizer, or class derived from it, optional
         Default: the optimizer of the problem.
     seed : int

@@ -1,11 +1,14 @@
-"""Runs an optimizer class as a plugin program, by the protocol of docs/plugin-protocol.md over standard input and output."""
+"""Runs a class as a program that exchanges lines of JSON over standard input and output.
+
+Optimizers follow docs/plugin-protocol.md, problems docs/problem-protocol.md.
+"""
 
 from __future__ import annotations
 
 import json
 import os
 import sys
-from typing import Any, TextIO, Union
+from typing import Any, TextIO, Union, cast
 
 import numpy as np
 
@@ -13,6 +16,7 @@ from ._values import FloatArray
 from .errors import UsageError
 from .optimizer import Optimizer, read_optimizer
 from .problem import STATUSES
+from .user_problem import AnyUserProblem, PythonProblem, is_user_problem
 
 
 class _Host:
@@ -89,19 +93,25 @@ class _Host:
         self.reason = reason
 
 
-def serve(optimizer: Union[Optimizer, type[Optimizer]]) -> None:
-    """Makes a script an optimizer for the command line: `armwright optimize q1-complex --optimizer 'exec:python3 SCRIPT'`.
+def serve(plugin: Union[Optimizer, type[Optimizer], AnyUserProblem]) -> None:
+    """Makes a script an optimizer or a problem for the command line.
 
-    Text that the optimizer prints goes to standard error, and so into optimizer.log of the run. Standard output is only for the protocol.
+    The program runs it as `armwright optimize q1-complex --optimizer 'exec:python3 SCRIPT'`, or for a problem as
+    `armwright optimize 'exec:python3 SCRIPT'`. Text that the class prints goes to standard error. For an optimizer the program writes it into
+    optimizer.log of the run. Standard output is only for the protocol.
 
     Examples
     --------
     >>> if __name__ == "__main__":
     ...     armwright.serve(MyOptimizer)
     """
-    mine = read_optimizer(optimizer)
-    host = _Host(sys.stdin, sys.stdout)
+    lines, answers = sys.stdin, sys.stdout
     sys.stdout = sys.stderr
+    if is_user_problem(plugin):
+        _serve_problem(PythonProblem(cast(AnyUserProblem, plugin)), lines, answers)
+        return
+    mine = read_optimizer(cast(Union[Optimizer, type[Optimizer]], plugin))
+    host = _Host(lines, answers)
     host.receive()  # hello
     host.send(mine.description)
     task = host.receive()
@@ -109,3 +119,21 @@ def serve(optimizer: Union[Optimizer, type[Optimizer]]) -> None:
         host.begin(task)
         mine.run(host, task["options"], task["seed"])
         host.send({"type": "done", "reason": host.reason} if host.reason else {"type": "done"})
+
+
+def _serve_problem(problem: PythonProblem, lines: TextIO, answers: TextIO) -> None:
+    def send(message: str) -> None:
+        answers.write(message + "\n")
+        answers.flush()
+
+    try:
+        for line in iter(lines.readline, ""):
+            message = json.loads(line)
+            if message["type"] == "hello":
+                send(problem.text)
+            elif message["type"] == "quit":
+                return
+            else:
+                problem.answer_message(message, send)
+    except BrokenPipeError:
+        os._exit(0)  # the host has ended

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Optional, Sequence, Union, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -13,8 +13,10 @@ from . import _armwright
 from ._values import FloatArray, Settings, to_jobs, to_settings, to_whole
 from .errors import UsageError
 from .optimizer import AnyOptimizer, to_row
+from .problem import load_problem
 from .progress import Listener, Show
 from .run import Run, load_run
+from .user_problem import AnyUserProblem, is_user_problem
 
 
 class Study:
@@ -148,7 +150,7 @@ def load_study(folder: Union[str, Path]) -> Study:
 
 
 def compare(
-    problems: Optional[Sequence[Union[str, Path]]] = None,
+    problems: Optional[Sequence[Union[str, Path, AnyUserProblem]]] = None,
     optimizers: Optional[Sequence[AnyOptimizer]] = None,
     *,
     study: Union[None, str, Path] = None,
@@ -171,13 +173,13 @@ def compare(
     cases and the same start. Random search and a local search take part as baselines. If the comparison is interrupted, the same call
     continues it. A call with more replicates, problems or optimizers runs only the new cells.
 
-    The runs of classes come first, one after the other in this process on `jobs` threads. All other runs have processes of their own, and
+    The runs of optimizers or problems that are classes come first, one after the other in this process on `jobs` threads. All other runs have processes of their own, and
     `jobs` of them run at a time.
 
     Parameters
     ----------
-    problems : sequence of str or path
-        Names or files.
+    problems : sequence of str, path, UserProblem, or classes derived from it
+        Names, files, or problems of your own.
     optimizers : sequence of str, Optimizer, or classes derived from it
         They use their default options. To give them other options, or schedules of their own, use a study file.
     study : str or path, optional
@@ -206,14 +208,22 @@ def compare(
     for name, names in (("problems", problems), ("optimizers", optimizers)):
         if isinstance(names, str):
             raise UsageError(f"{name} is the text {names!r}; it must be a list, such as [{names!r}]")
+    labels: list[str] = []
+    own = []
     for problem in problems or []:
-        if not isinstance(problem, (str, Path)):
-            raise UsageError(f"problems holds {problem!r}; it must hold names or files, whose settings `set` changes for all")
+        if is_user_problem(problem):
+            own.append(load_problem(cast(AnyUserProblem, problem))._inner)
+            labels.append(own[-1].asked_name)
+        elif isinstance(problem, (str, Path)):
+            labels.append(str(problem))
+        else:
+            raise UsageError(f"problems holds {problem!r}; it must hold names, files or problems of your own, whose settings `set` changes "
+                             "for all")
     rows = [to_row(optimizer) for optimizer in optimizers or []]
     with Listener(progress) as listener:
         try:
             folder, text = _armwright.compare(
-                "" if study is None else str(study), [str(problem) for problem in problems or []], rows, to_settings(set), replicates, budget,
+                "" if study is None else str(study), labels, rows, own, to_settings(set), replicates, budget,
                 schedule, None if seed is None else to_whole("seed", seed, 2**63 - 1), baselines, trust, None if out is None else str(out), new,
                 to_jobs(jobs), time_limit_s, listener)
         except KeyboardInterrupt:

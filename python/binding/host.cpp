@@ -26,6 +26,13 @@ py::object to_exception(const py::error_already_set& error) {
   return error.value();
 }
 
+std::shared_ptr<py::object> share(py::object object) {
+  return {new py::object(std::move(object)), [](py::object* last) {
+            const py::gil_scoped_acquire gil;
+            delete last;
+          }};
+}
+
 Host::Host(py::object listener) : listener_(std::move(listener)) {
   stop_.set_lookout([this] { look_out(); });
 }
@@ -110,7 +117,10 @@ void Host::raise_held() const {
 void Host::run(const std::function<void()>& work) {
   {
     const py::gil_scoped_release released;
-    work();
+    try {
+      work();
+    } catch (const WorkStopped&) {  // finish() throws the reason
+    }
   }
   finish();
 }

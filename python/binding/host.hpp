@@ -9,6 +9,7 @@
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -23,6 +24,10 @@ namespace py = pybind11;
 
 // Returns the exception itself, with its traceback.
 py::object to_exception(const py::error_already_set& error);
+
+// Returns a shared object that takes the GIL before it is destroyed, because threads without the GIL
+// copy and destroy what refers to it.
+std::shared_ptr<py::object> share(py::object object);
 
 // An observer and a stop signal for one call from Python. The caller creates and destroys it with
 // the GIL held.
@@ -42,7 +47,8 @@ class Host final : public RunObserver {
 
   // Runs `work` without the GIL, then tells the listener the last messages. Throws what the work
   // throws; otherwise what Python raised meanwhile: KeyboardInterrupt, an exception of the
-  // listener, or an exception of an optimizer that does not count as the optimizer's failure.
+  // listener, or an exception of an optimizer that does not count as the optimizer's failure. The
+  // work may end with WorkStopped after such an exception.
   void run(const std::function<void()>& work);
   // Does the same on a new thread, for work that does not check the stop signal on the thread that
   // called it.

@@ -141,15 +141,6 @@ class EvaluatorBridge {
   std::exception_ptr failure_;
 };
 
-// Returns a shared object that takes the GIL before it is destroyed, because rows are copied and
-// destroyed on threads without the GIL.
-std::shared_ptr<py::object> share(py::object object) {
-  return {new py::object(std::move(object)), [](py::object* last) {
-            const py::gil_scoped_acquire gil;
-            delete last;
-          }};
-}
-
 // An optimizer that is a Python class.
 class PythonOptimizer : public Optimizer {
  public:

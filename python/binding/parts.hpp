@@ -22,6 +22,7 @@ namespace armwright::python {
 namespace py = pybind11;
 
 class Host;
+struct PythonProblem;
 
 void add_problems(py::module_& module);
 void add_designs(py::module_& module);
@@ -34,7 +35,12 @@ struct ProblemHandle {
   std::string name;
   std::vector<std::string> settings;  // KEY=VALUE
   LoadedProblem loaded;
+  std::shared_ptr<const PythonProblem> python = {};  // null: the library has the problem
 };
+
+// Returns the problem for one call with `jobs` threads. A problem of Python may be simulated only
+// while `host` runs work.
+LoadedProblem load_for_call(const ProblemHandle& handle, Host& host, unsigned jobs);
 
 // Returns the row of an optimizer that Python passes: a name, or the tuple (name, description,
 // input hashes, run). Each run of the optimizer calls run(evaluator, values, seed). Any thread may

@@ -14,6 +14,7 @@
 #include "problems/config/path_survey.hpp"
 #include "study/executor/case_executor.hpp"
 #include "study/run/run_observer.hpp"
+#include "user_problems.hpp"
 
 namespace armwright::python {
 namespace {
@@ -23,6 +24,25 @@ std::unique_ptr<ProblemHandle> load(const std::string& name,
   const py::gil_scoped_release released;
   return std::make_unique<ProblemHandle>(
       ProblemHandle{name, settings, load_problem(name, settings)});
+}
+
+// Returns a problem of Python. It cannot be simulated before load_for_call().
+std::unique_ptr<ProblemHandle> load_python(const std::string& name, const std::string& description,
+                                           py::object answer, py::object enter_worker,
+                                           const ServerLimits& limits, bool isolate,
+                                           bool is_batched,
+                                           const std::vector<std::string>& settings) {
+  auto problem = make_python_problem({.name = name,
+                                      .answer = share(std::move(answer)),
+                                      .enter_worker = share(std::move(enter_worker)),
+                                      .limits = limits,
+                                      .isolate = isolate,
+                                      .is_batched = is_batched},
+                                     description);
+  UserProgram program{.name = name, .description = problem->description};
+  LoadedProblem loaded = load_problem(name, settings, engine_table(), {.hosts = {program}});
+  return std::make_unique<ProblemHandle>(
+      ProblemHandle{name, settings, std::move(loaded), std::move(problem)});
 }
 
 CaseRole read_role(const std::string& role) {
@@ -103,10 +123,14 @@ std::size_t count_at_once(std::size_t cases) {
 // Jacobians). Residuals and Jacobians are lists of rows.
 py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
                    const EvaluateRequest& request, const py::object& listener) {
-  const Problem& problem = *handle.loaded.problem;
-  check_points(points, problem.description().variables, "X", true);
+  check_points(points, handle.loaded.problem->description().variables, "X", true);
   const auto count = static_cast<std::size_t>(points.shape(0));
   const CaseBlock block{read_role(request.role), request.set, request.numbers};
+  const auto jobs = static_cast<unsigned>(
+      std::min<std::size_t>(request.jobs, std::max<std::size_t>(1, count * block.numbers.size())));
+  Host host(listener);
+  const LoadedProblem loaded = load_for_call(handle, host, jobs);
+  const Problem& problem = *loaded.problem;
   Table table(problem.description(), count, block.numbers.size());
   const std::vector<double> penalty = problem.penalty_objectives();
   const std::size_t kept = request.residuals || request.jacobian ? count : 0;
@@ -116,10 +140,8 @@ py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
   for (std::size_t row = 0; row < count; ++row) {
     rows.push_back(get_row(points, static_cast<py::ssize_t>(row)));
   }
-  Host host(listener);
   host.run([&] {
-    ThreadExecutor executor(std::min<std::size_t>(
-        request.jobs, std::max<std::size_t>(1, count * block.numbers.size())));
+    ThreadExecutor executor(jobs);
     std::mutex mutex;  // guards reasons and progress
     Progress progress;
     progress.phase = block.role;
@@ -174,6 +196,14 @@ py::array_t<double> list_cases(const ProblemHandle& handle, const std::string& s
 
 }  // namespace
 
+LoadedProblem load_for_call(const ProblemHandle& handle, Host& host, unsigned jobs) {
+  if (!handle.python) {
+    return handle.loaded;
+  }
+  return load_problem(handle.name, handle.settings, engine_table(),
+                      {.hosts = {make_program(handle.python, host, jobs)}});
+}
+
 void add_problems(py::module_& module) {
   module.def("list_problems", [] {
     std::vector<std::pair<std::string, std::string>> titles;
@@ -189,10 +219,20 @@ void add_problems(py::module_& module) {
     statuses.append(to_string(status));  // in the order of their numbers
   }
   module.attr("STATUSES") = py::tuple(statuses);
+  module.def("load_python_problem",
+             [](const std::string& name, const std::string& description, py::object answer,
+                py::object enter_worker, double time_limit_s, double memory_mib, bool isolate,
+                bool is_batched, const std::vector<std::string>& settings) {
+               return load_python(name, description, std::move(answer), std::move(enter_worker),
+                                  {.time_limit_s = time_limit_s, .memory_mib = memory_mib}, isolate,
+                                  is_batched, settings);
+             });
   py::class_<ProblemHandle>(module, "Problem")
       .def(py::init(&load))
       .def_readonly("asked_name", &ProblemHandle::name)
       .def_readonly("settings", &ProblemHandle::settings)
+      .def_property_readonly("is_python",
+                             [](const ProblemHandle& handle) { return handle.python != nullptr; })
       .def("describe", [](const ProblemHandle& handle) { return describe(handle.loaded).dump(); })
       .def("penalty",
            [](const ProblemHandle& handle) { return handle.loaded.problem->penalty_objectives(); })

@@ -53,7 +53,8 @@ py::tuple optimize(const ProblemHandle& problem, const py::object& optimizer,
                    const std::vector<std::string>& command, const py::object& listener) {
   Host host(listener);
   RunRequest request;
-  request.plan = make_plan(problem.loaded, load_row(optimizer, host), question);
+  request.plan =
+      make_plan(load_for_call(problem, host, place.jobs), load_row(optimizer, host), question);
   request.folder = place.choose(make_run_name(request.plan));
   if (needs_plain_form(request.folder, problem.loaded, problem.settings)) {
     std::vector<std::string> settings = problem.settings;

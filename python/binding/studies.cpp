@@ -17,6 +17,7 @@
 #include "study/compare/study_runner.hpp"
 #include "study/matrix/cell_attempt.hpp"
 #include "study/run/run_observer.hpp"
+#include "user_problems.hpp"
 
 namespace armwright::python {
 namespace {
@@ -24,7 +25,8 @@ namespace {
 using nlohmann::json;
 
 bool is_of_python(const StudyPlan& plan, const Cell& cell) {
-  return is_host_name(plan.optimizers[cell.optimizer].row.name);
+  return is_host_name(plan.optimizers[cell.optimizer].row.name) ||
+         is_host_name(plan.problems[cell.problem].loaded.program);
 }
 
 // Reports a cell's progress as progress of the whole study.
@@ -46,7 +48,7 @@ class CellObserver final : public RunObserver {
   Progress done_;
 };
 
-// Runs the cells whose optimizer is a Python class, one after the other in this process, because
+// Runs the cells whose optimizer or problem is a Python class, one after the other in this process, because
 // forked processes must not run Python.
 void run_python_cells(const StudyPlan& plan, const std::filesystem::path& folder, unsigned jobs,
                       StopSignal& stop, RunObserver& observer) {
@@ -110,9 +112,13 @@ std::string describe(const StudyPlan& plan, const StudyResult& result) {
 
 // Returns the study's folder and its results. The results are None if the time limit ended the call
 // first.
-py::tuple compare(StudyRequest request, const py::list& optimizers, const Place& place,
-                  const py::object& listener) {
+py::tuple compare(StudyRequest request, const py::list& optimizers, const py::list& own_problems,
+                  const Place& place, const py::object& listener) {
   Host host(listener);
+  for (const py::handle problem : own_problems) {
+    request.hosts.push_back(
+        make_program(problem.cast<const ProblemHandle&>().python, host, place.jobs));
+  }
   for (const py::handle optimizer : optimizers) {
     if (py::isinstance<py::str>(optimizer)) {
       request.optimizers.push_back(optimizer.cast<std::string>());
@@ -157,39 +163,40 @@ std::string load_study(const std::filesystem::path& folder) {
 }  // namespace
 
 void add_studies(py::module_& module) {
-  module.def("compare",
-             [](const std::string& file, std::vector<std::string> problems,
-                const py::list& optimizers, std::vector<std::string> settings,
-                std::optional<std::int64_t> replicates, std::optional<std::int64_t> budget,
-                const std::optional<std::string>& schedule, std::optional<std::uint64_t> seed,
-                bool baselines, bool trust, std::optional<std::string> out, bool another,
-                unsigned jobs, std::optional<double> time_limit_s, const py::object& listener) {
-               StudyRequest request;
-               request.file = file;
-               request.problems = std::move(problems);
-               request.settings = std::move(settings);
-               constexpr std::int64_t kMostReplicates = 10'000;
-               if (replicates) {
-                 request.replicates =
-                     static_cast<int>(check_number("replicates", *replicates, 1, kMostReplicates));
-               }
-               if (budget) {
-                 request.budget = check_number("budget", *budget, 1, kMostBudget);
-               }
-               if (schedule) {
-                 request.schedule = read_study_schedule(*schedule);
-                 if (!request.schedule) {
-                   throw Error(ErrorKind::usage,
-                               fmt::format("schedule is '{}'; it must be {}", sanitize(*schedule),
-                                           describe_study_schedules()));
-                 }
-               }
-               request.seed = seed;
-               request.baselines = baselines;
-               request.ask = [trust](const std::string&) { return trust; };
-               return compare(std::move(request), optimizers,
-                              {std::move(out), another, jobs, time_limit_s}, listener);
-             });
+  module.def(
+      "compare",
+      [](const std::string& file, std::vector<std::string> problems, const py::list& optimizers,
+         const py::list& own_problems, std::vector<std::string> settings,
+         std::optional<std::int64_t> replicates, std::optional<std::int64_t> budget,
+         const std::optional<std::string>& schedule, std::optional<std::uint64_t> seed,
+         bool baselines, bool trust, std::optional<std::string> out, bool another, unsigned jobs,
+         std::optional<double> time_limit_s, const py::object& listener) {
+        StudyRequest request;
+        request.file = file;
+        request.problems = std::move(problems);
+        request.settings = std::move(settings);
+        constexpr std::int64_t kMostReplicates = 10'000;
+        if (replicates) {
+          request.replicates =
+              static_cast<int>(check_number("replicates", *replicates, 1, kMostReplicates));
+        }
+        if (budget) {
+          request.budget = check_number("budget", *budget, 1, kMostBudget);
+        }
+        if (schedule) {
+          request.schedule = read_study_schedule(*schedule);
+          if (!request.schedule) {
+            throw Error(ErrorKind::usage,
+                        fmt::format("schedule is '{}'; it must be {}", sanitize(*schedule),
+                                    describe_study_schedules()));
+          }
+        }
+        request.seed = seed;
+        request.baselines = baselines;
+        request.ask = [trust](const std::string&) { return trust; };
+        return compare(std::move(request), optimizers, own_problems,
+                       {std::move(out), another, jobs, time_limit_s}, listener);
+      });
   module.def("escape_name", [](const std::string& label) { return escape_name(label); });
   module.def("load_study", [](const std::string& folder) {
     const py::gil_scoped_release released;

@@ -147,7 +147,10 @@ DecisionVariable read_variable(const FieldReader& fields) {
   variable.upper = fields.number("upper");
   const std::array<std::string, 2> scales = {"linear", "logarithmic"};
   variable.scale = fields.choice("scale", scales) == 1 ? Scale::logarithmic : Scale::linear;
-  variable.start = fields.has("start") ? fields.number("start") : choose_start(variable);
+  // check_description() refuses bounds that cross, which have no middle.
+  variable.start = fields.has("start")                ? fields.number("start")
+                   : variable.lower < variable.upper ? choose_start(variable)
+                                                      : variable.lower;
   return variable;
 }
 
@@ -295,6 +298,7 @@ UserDescription read_user_description(const json& message) {
   UserDescription description;
   description.name = fields.name();
   description.summary = fields.text("summary", "");
+  description.version = fields.text("version", "");
   fields.each("variables", kMostVariables,
               [&](const FieldReader& one) { description.variables.push_back(read_variable(one)); });
   fields.each("objectives", kMostOutputs, [&](const FieldReader& one) {
@@ -355,7 +359,7 @@ std::string to_json(const UserDescription& description) {
   }
   OrderedJson metrics = OrderedJson::array();
   std::ranges::transform(description.metrics, std::back_inserter(metrics), write_quantity);
-  const OrderedJson all = {{"type", "problem"},
+  OrderedJson all = {{"type", "problem"},
                            {"protocol", kProblemProtocol},
                            {"name", description.name},
                            {"summary", description.summary},
@@ -371,6 +375,9 @@ std::string to_json(const UserDescription& description) {
                            {"combine", description.takes_worst_case ? "worst" : "mean"},
                            {"deterministic", description.is_deterministic},
                            {"records", description.has_records}};
+  if (!description.version.empty()) {
+    all["version"] = description.version;
+  }
   return all.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 

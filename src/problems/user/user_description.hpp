@@ -39,6 +39,8 @@ struct UserConstraint {
 struct UserDescription {
   std::string name;
   std::string summary;
+  // Changes if the problem computes something else; empty: the program does not say.
+  std::string version;
   std::vector<DecisionVariable> variables;
   std::vector<UserObjective> objectives;
   std::vector<UserConstraint> constraints;
