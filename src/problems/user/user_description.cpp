@@ -148,9 +148,9 @@ DecisionVariable read_variable(const FieldReader& fields) {
   const std::array<std::string, 2> scales = {"linear", "logarithmic"};
   variable.scale = fields.choice("scale", scales) == 1 ? Scale::logarithmic : Scale::linear;
   // check_description() refuses bounds that cross, which have no middle.
-  variable.start = fields.has("start")                ? fields.number("start")
+  variable.start = fields.has("start")               ? fields.number("start")
                    : variable.lower < variable.upper ? choose_start(variable)
-                                                      : variable.lower;
+                                                     : variable.lower;
   return variable;
 }
 
@@ -360,21 +360,21 @@ std::string to_json(const UserDescription& description) {
   OrderedJson metrics = OrderedJson::array();
   std::ranges::transform(description.metrics, std::back_inserter(metrics), write_quantity);
   OrderedJson all = {{"type", "problem"},
-                           {"protocol", kProblemProtocol},
-                           {"name", description.name},
-                           {"summary", description.summary},
-                           {"variables", variables},
-                           {"objectives", objectives},
-                           {"constraints", constraints},
-                           {"metrics", metrics},
-                           {"residuals", description.has_residuals},
-                           {"cases",
-                            {{"training", description.training_cases},
-                             {"validation", description.validation_cases},
-                             {"test", description.test_cases}}},
-                           {"combine", description.takes_worst_case ? "worst" : "mean"},
-                           {"deterministic", description.is_deterministic},
-                           {"records", description.has_records}};
+                     {"protocol", kProblemProtocol},
+                     {"name", description.name},
+                     {"summary", description.summary},
+                     {"variables", variables},
+                     {"objectives", objectives},
+                     {"constraints", constraints},
+                     {"metrics", metrics},
+                     {"residuals", description.has_residuals},
+                     {"cases",
+                      {{"training", description.training_cases},
+                       {"validation", description.validation_cases},
+                       {"test", description.test_cases}}},
+                     {"combine", description.takes_worst_case ? "worst" : "mean"},
+                     {"deterministic", description.is_deterministic},
+                     {"records", description.has_records}};
   if (!description.version.empty()) {
     all["version"] = description.version;
   }
