@@ -117,7 +117,7 @@ TEST(ProblemContract, AFailureAtABoundThatIsAnsweredIsNoFault) {
 
 TEST(ProblemContract, FindsNumbersThatAreNotFinite) {
   expect_broken("Finite", make_program("    return float('nan')\n"),
-                "its objective 'f' is not a number");
+                "its objective 'f' is not a finite number");
 }
 
 TEST(ProblemContract, FindsASetWithoutCases) {

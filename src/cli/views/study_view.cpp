@@ -306,6 +306,8 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
       text += "  " + line + "\n";
     }
   }
+  const bool has_arm = std::ranges::any_of(
+      plan.problems, [](const StudyProblem& one) { return one.loaded.tracking() != nullptr; });
   return text +
          fmt::format(
              "\nA12: share of the pairs of runs in which the first optimizer of the table is "
@@ -314,8 +316,9 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
              "{}; ** below it, and this one is\nbetter than the first. Success: runs within the "
              "problem's resolution of the optimum. Cases to 1 %: expected\nnumber, with restarts, "
              "until 1 % of the way from the start to the best known value is left. Cases\nfailed: "
-             "mean share of test cases with an error above 100 mm.\nTables: {}\n",
-             kSignificance, sanitize((folder / "tables").string()));
+             "mean share of test cases {}.\nTables: {}\n",
+             kSignificance, has_arm ? "with an error above 100 mm" : "without a number",
+             sanitize((folder / "tables").string()));
 }
 
 int end_study(const StudyPlan& plan, const std::filesystem::path& folder, unsigned jobs,

@@ -300,6 +300,8 @@ std::filesystem::path resolve_named(const ConfigTable& table, const Setting<std:
 LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path& path,
                            std::span<const EngineRow> engines, const ProgramSource& programs) {
   LoadedProblem loaded;
+  table.find(kProblemName);  // messages list the keys in the order in which they are first read
+  table.find(kTitle);
   table.get(kDescription);
   const std::string kind = table.get(kProblemKind);
   CaseSets usual;
