@@ -78,6 +78,9 @@ std::vector<SourceRow> make_argument_rows() {
       {"reproduce", "--table", kFree},
       {"export", "--format", choose(list_export_formats())},
       {"import", "--optimizer", kFree},  // a label
+      {"ask", "RUN", kFolder},
+      {"tell", "RUN", kFolder},
+      {"tell", "FILE", kFile},
       {"import", "EXPORT", kFile},
       {"testset export", "NAME", kFree},
       {"testset hash", "NAME", kFile},
