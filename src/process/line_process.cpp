@@ -189,7 +189,7 @@ void LineProcess::check_memory() {
   next_memory_check_ = now + kSlice;
   const double grown_mib = read_memory_mib(pid_) - memory_mib_at_start_;
   if (grown_mib > memory_limit_mib_) {
-    throw LineProcessFailure(
+    throw LineProcessMemory(
         fmt::format("took {:.0f} MiB of memory beyond what it began with; {:.0f} MiB are allowed "
                     "(option memory_mib)",
                     grown_mib, memory_limit_mib_));

@@ -25,6 +25,11 @@ class LineProcessFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The child took more memory than it may.
+class LineProcessMemory : public LineProcessFailure {
+  using LineProcessFailure::LineProcessFailure;
+};
+
 // The child did not answer in time.
 class LineProcessSilence : public LineProcessFailure {
   using LineProcessFailure::LineProcessFailure;

@@ -21,7 +21,7 @@ LONGEST_CALL_S = 0.1  # the processor time that one TAB may cost
 # The typed text before TAB, and the line after it. A blank at the end means that the word is complete.
 CASES = [
     ("armwright opt", "armwright optimize "),
-    ("armwright check", "armwright check-plugin "),
+    ("armwright check-pl", "armwright check-plugin "),
     ("armwright testset ex", "armwright testset export "),
     ("armwright manual testset has", "armwright manual testset hash "),
     ("armwright optimize q1-compl", "armwright optimize q1-complex "),

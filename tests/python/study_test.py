@@ -89,7 +89,7 @@ class StudyTest(FolderTest):
         self.assertEqual(armwright.compare(study="mine.toml", replicates=3).values.shape, (3, 1, 3))
         for pieces, call in ((["nothing to compare"], lambda: armwright.compare()),
                              (["problems is the text 'sphere'"], lambda: armwright.compare("sphere", ["ga"])),
-                             (["must hold names or files"], lambda: armwright.compare([armwright.load_problem("sphere")], ["ga"])),
+                             (["must hold names, files or problems of your own"], lambda: armwright.compare([armwright.load_problem("sphere")], ["ga"])),
                              (["two optimizers of the study are called 'python:steps'"], lambda: compare(optimizers=[Steps, Steps])),
                              (["names no budget"], lambda: armwright.compare(["sphere"], ["ga"])),
                              (["replicates is 0"], lambda: compare(replicates=0)),

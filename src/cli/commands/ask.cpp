@@ -203,8 +203,8 @@ struct TellOptions {
 
 int run_tell(const TellOptions& options) {
   constexpr std::size_t kLimit_bytes = std::size_t{64} << 20;
-  const RunPlan plan = load_recorded_plan(options.folder);
-  const Problem& problem = *plan.problem.problem;
+  const LoadedProblem loaded = load_problem_of_run(options.folder);
+  const Problem& problem = *loaded.problem;
   if (find_user_description(problem) == nullptr) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: armwright simulates the problem of this run itself; 'armwright "

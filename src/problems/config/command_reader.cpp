@@ -194,6 +194,10 @@ void check_pointer(const ConfigTable& table, const std::string& pointer) {
 
 std::regex read_regex(const ConfigTable& table) {
   const std::string text = table.get(kRegex);
+  constexpr std::size_t kLongestPattern = 1000;  // the library recurses once per character
+  if (text.size() > kLongestPattern) {
+    table.refuse(kRegex, fmt::format("it may have at most {} characters", kLongestPattern));
+  }
   try {
     std::regex pattern(text, std::regex::ECMAScript | std::regex::optimize);
     if (pattern.mark_count() >= 1) {

@@ -296,8 +296,7 @@ class LibraryServer final : public CaseServer {
   // Appends the answers to at most kMostQuestions jobs.
   void answer_some(std::span<const CaseJob> jobs, std::vector<CaseAnswer>& answers) {
     const std::size_t wanted = answers.size() + jobs.size();
-    const double limit_s =
-        limits_.time_limit_s * (process_.has_batches() ? static_cast<double>(jobs.size()) : 1);
+    const double limit_s = limits_.time_limit_s;
     process_.send(make_packet(QuestionKind::evaluate, jobs), limit_s);
     while (answers.size() < wanted) {
       const std::string packet = process_.receive(limit_s);

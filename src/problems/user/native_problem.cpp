@@ -189,8 +189,9 @@ class NativeServer final : public CaseServer {
       caller_.ask(questions, [](std::size_t) {});
       for (std::size_t i = 0; i < some.size(); ++i) {
         const NativeCaller::Answer one = caller_.answer(i);
-        answers.push_back(
-            make_answer(description_, one.status, one.reason, one.numbers, one.residuals));
+        answers.push_back(make_answer(description_, one.status,
+                                      {one.reason, strnlen(one.reason, kLongestNativeText)},
+                                      one.numbers, one.residuals));
       }
       jobs = jobs.subspan(some.size());
     }

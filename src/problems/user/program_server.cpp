@@ -56,33 +56,35 @@ class ProgramServer final : public CaseServer {
   std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
     std::vector<CaseAnswer> answers;
     ++id_;
-    converse(make_question(description_, "evaluate", id_, jobs),
-             limits_.time_limit_s * static_cast<double>(jobs.size()), [&](const json& message) {
-               read_answers(message, description_, id_, jobs.size() - answers.size(), answers);
-               return answers.size() == jobs.size();
-             });
+    // Several jobs take little time together, or each is asked for alone.
+    converse(make_question(description_, "evaluate", id_, jobs), [&](const json& message) {
+      read_answers(message, description_, id_, jobs.size() - answers.size(), answers);
+      return answers.size() == jobs.size();
+    });
     return answers;
   }
 
   CaseRecord record(const CaseJob& job) override {
     CaseRecord record;
     ++id_;
-    converse(make_question(description_, "record", id_, {&job, 1}), limits_.time_limit_s,
-             [&](const json& message) {
-               record = read_record(message, id_);
-               return true;
-             });
+    converse(make_question(description_, "record", id_, {&job, 1}), [&](const json& message) {
+      record = read_record(message, id_);
+      return true;
+    });
     return record;
   }
 
  private:
   // Sends a question and hands the messages that follow to `take` until it returns true.
-  void converse(const std::string& question, double limit_s,
-                const std::function<bool(const json&)>& take) {
+  void converse(const std::string& question, const std::function<bool(const json&)>& take) {
+    const double limit_s = limits_.time_limit_s;
     try {
       child_.send(question, limit_s);
       while (!take(read_message(child_.receive(limit_s, [] { return false; }).value(), true))) {
       }
+    } catch (const LineProcessMemory&) {
+      throw ServerFailure(fmt::format("took more than {:g} MiB of memory (program.memory_mib)",
+                                      limits_.memory_mib));
     } catch (const LineProcessSilence& error) {
       throw ServerFailure(fmt::format("{} (program.time_limit_s)", error.what()),
                           EvaluationStatus::timed_out);

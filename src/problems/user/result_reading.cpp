@@ -228,10 +228,14 @@ double CommandResults::read(const ResultReading& reading) {
   const nlohmann::json& all = get_json(reading.from);
   const nlohmann::json::json_pointer pointer(reading.what);
   const std::string source = describe_source(reading.from);
-  if (!all.contains(pointer)) {
-    throw MissingResult(fmt::format("{} has nothing at {}", source, quote(reading.what)));
-  }
-  const nlohmann::json& value = all.at(pointer);
+  const auto find = [&]() -> nlohmann::json {
+    try {
+      return all.at(pointer);
+    } catch (const nlohmann::json::exception&) {  // no such place, or an index beyond all numbers
+      throw MissingResult(fmt::format("{} has nothing at {}", source, quote(reading.what)));
+    }
+  };
+  const nlohmann::json value = find();
   if (!value.is_number() || !std::isfinite(value.get<double>())) {
     throw MissingResult(fmt::format("{} has {} at {}, not a finite number", source, quote(value),
                                     quote(reading.what)));

@@ -82,12 +82,12 @@ void ServerPool::disown_inherited() {
   static_cast<void>(launcher_.release());  // its thread does not exist here
 }
 
-std::unique_ptr<CaseServer> ServerPool::take() {
+std::unique_ptr<CaseServer> ServerPool::take(bool is_new) {
   Launcher* launcher = nullptr;
   {
     const std::lock_guard lock(mutex_);
     disown_inherited();
-    if (!idle_.empty()) {
+    if (!is_new && !idle_.empty()) {
       auto server = std::move(idle_.back());
       idle_.pop_back();
       return server;

@@ -22,8 +22,9 @@ class ServerPool {
   ServerPool(const ServerPool&) = delete;
   ServerPool& operator=(const ServerPool&) = delete;
 
-  // Returns an idle server, or starts one. Throws what starting throws.
-  std::unique_ptr<CaseServer> take();
+  // Returns an idle server, or starts one; with `is_new` always starts one. Throws what starting
+  // throws.
+  std::unique_ptr<CaseServer> take(bool is_new = false);
   void give_back(std::unique_ptr<CaseServer> server);
 
  private:

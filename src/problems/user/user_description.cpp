@@ -202,6 +202,10 @@ void check_variable(const DecisionVariable& variable, const std::string& field,
                          format_exact(value), key));
     }
   }
+  if (!std::isfinite(variable.upper - variable.lower)) {
+    refuse(field + ".upper", fmt::format("is {}; upper - lower must be a finite number",
+                                         format_exact(variable.upper)));
+  }
   if (variable.lower >= variable.upper) {
     refuse(field + ".lower",
            fmt::format("is {}; it must be less than upper, which is {}",

@@ -113,12 +113,12 @@ class UserProblem final : public Problem {
     return objective.is_maximised ? -value : value;
   }
 
-  std::unique_ptr<CaseServer> take_server() const {
+  std::unique_ptr<CaseServer> take_server(bool is_new = false) const {
     if (!program_.start) {
       throw Error(ErrorKind::usage,
                   fmt::format("problem '{}': {}", sanitize(program_.name), program_.why_not));
     }
-    return pool_.take();
+    return pool_.take(is_new);
   }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -127,10 +127,12 @@ class UserProblem final : public Problem {
   }
 
   // Asks for the answers to jobs of one block, and appends an outcome per job. If the server fails
-  // while it has several jobs, each job is asked for alone, so that only the one that makes it fail
-  // is a failed case.
-  void ask(std::span<const CaseJob> jobs, std::vector<CaseOutcome>& outcomes) const {
-    auto server = take_server();
+  // while it has several jobs, each job is asked for alone. If it crashes with one job, a new server
+  // is asked once more, because the jobs before may have made it crash. So only the job that makes a
+  // server fail is a failed case.
+  void ask(std::span<const CaseJob> jobs, std::vector<CaseOutcome>& outcomes,
+           bool is_new = false) const {
+    auto server = take_server(is_new);
     try {
       const auto begin = std::chrono::steady_clock::now();
       std::vector<CaseAnswer> answers = server->answer(jobs);
@@ -146,6 +148,10 @@ class UserProblem final : public Problem {
         for (const CaseJob& job : jobs) {
           ask({&job, 1}, outcomes);
         }
+        return;
+      }
+      if (!is_new && failure.status() != EvaluationStatus::timed_out) {
+        ask(jobs, outcomes, true);
         return;
       }
       outcomes.push_back(make_failure(jobs.front(), failure.status(),

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -299,7 +300,11 @@ bool needs_plain_form(const std::filesystem::path& folder, const LoadedProblem& 
          find(recorded, "/function/instance").is_null();
 }
 
-RunPlan load_recorded_plan(const std::filesystem::path& folder) {
+namespace {
+
+// Calls `read` with the recorded configuration of a run.
+void read_configuration(const std::filesystem::path& folder,
+                        const std::function<void(const json& configuration)>& read) {
   const auto file = folder / "manifest.json";
   if (!path_exists(file)) {
     throw Error(ErrorKind::usage,
@@ -307,16 +312,46 @@ RunPlan load_recorded_plan(const std::filesystem::path& folder) {
                             sanitize(folder.string())));
   }
   const json manifest = read_manifest(file);
-  RunPlan plan;
   try {
-    const json& configuration = manifest.at("configuration");
+    read(manifest.at("configuration"));
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not a manifest that armwright wrote ({})",
+                            sanitize(file.string()), describe_json_error(error.what())));
+  }
+}
+
+}  // namespace
+
+LoadedProblem load_problem_of_run(const std::filesystem::path& folder) {
+  LoadedProblem problem;
+  read_configuration(folder, [&](const json& configuration) {
+    problem = load_recorded_problem(configuration.at("problem").dump(), "problem", folder);
+  });
+  return problem;
+}
+
+RunPlan load_recorded_plan(const std::filesystem::path& folder) {
+  RunPlan plan;
+  plan.problem = load_problem_of_run(folder);
+  read_configuration(folder, [&](const json& configuration) {
     const json& run = configuration.at("run");
-    plan.problem = load_recorded_problem(configuration.at("problem").dump(), "problem", folder);
-    plan.optimizer = load_optimizer(run.at("optimizer").get<std::string>());
+    const auto optimizer = run.at("optimizer").get<std::string>();
     std::vector<std::string> options;
     for (const auto& [name, value] : run.at("options").items()) {
       options.push_back(name + "=" + (value.is_string() ? value.get<std::string>() : value.dump()));
     }
+    const bool writes = std::ranges::any_of(
+        options, [](const std::string& one) { return one.starts_with("log="); });
+    if (is_plugin(optimizer) || writes) {
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("the run in {} would run, with all of your rights: {}{}. If you trust "
+                      "it, name --problem, --optimizer and --budget as when the run began",
+                      sanitize(folder.string()), sanitize(optimizer),
+                      writes ? ", which writes to a file (log=)" : ""));
+    }
+    plan.optimizer = load_optimizer(optimizer);
     plan.options = Options::parse(plan.optimizer.name, plan.optimizer.options, options);
     plan.seed = run.at("seed").get<std::uint64_t>();
     plan.budget = run.at("budget").get<std::int64_t>();
@@ -328,11 +363,7 @@ RunPlan load_recorded_plan(const std::filesystem::path& folder) {
                       .best = selection.at("best").get<int>(),
                       .most = selection.value("most", 0),
                       .evaluated_only = selection.value("evaluated_only", false)};
-  } catch (const json::exception& error) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("{}: is not a manifest that armwright wrote ({})",
-                            sanitize(file.string()), describe_json_error(error.what())));
-  }
+  });
   return plan;
 }
 

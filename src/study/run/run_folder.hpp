@@ -85,8 +85,13 @@ inline constexpr const char* kPlainForm = "function.instance=0";
 bool needs_plain_form(const std::filesystem::path& folder, const LoadedProblem& problem,
                       std::span<const std::string> settings);
 
-// Returns the plan that the run in the folder has recorded, for a run without racing. Loads plugins,
-// and starts no program of a problem. Throws Error{usage} if the folder is not a run's, Error{bad_data}
+// Returns the problem that the run in the folder has recorded. Starts no program. Throws as
+// load_recorded_plan().
+LoadedProblem load_problem_of_run(const std::filesystem::path& folder);
+
+// Returns the plan that the run in the folder has recorded, for a run without racing. Starts no
+// program of a problem. Refuses a plugin and an option that writes to a file by Error{usage}: somebody
+// else may have made the folder. Throws Error{usage} if the folder is not a run's, Error{bad_data}
 // if the manifest is damaged, and what loading the problem and the optimizer throws.
 RunPlan load_recorded_plan(const std::filesystem::path& folder);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "base/error.hpp"
@@ -49,18 +50,38 @@ bool are_record_files_there(const RunFolder& folder, const RunPlan& plan) {
          });
 }
 
-void write_record_files(const Folder& folder, const RunPlan& plan, const std::vector<double>& x) {
-  const CaseBlock block{CaseRole::test, plan.problem.sets.test, {0}};
-  const CaseRecord record = plan.problem.problem->record_case(x, block, 0);
-  std::vector<std::pair<std::string, std::string>> files;
+namespace {
+
+void check_record_files(const CaseRecord& record) {
+  std::set<std::string> names;
   for (const CaseRecord::File& file : record.files) {
     check_file_name(file.name);
-    const std::string name = kWinnerFiles + file.name;
-    if (std::ranges::count(files, name, &std::pair<std::string, std::string>::first) > 0) {
+    if (!names.insert(file.name).second) {
       throw Error(ErrorKind::bad_data, fmt::format("the problem's record has two files named '{}'",
                                                    sanitize(file.name)));
     }
-    files.emplace_back(name, file.bytes);
+  }
+}
+
+}  // namespace
+
+void write_record_files(const Folder& folder, const RunPlan& plan, const std::vector<double>& x) {
+  const CaseBlock block{CaseRole::test, plan.problem.sets.test, {0}};
+  CaseRecord record;
+  try {
+    record = plan.problem.problem->record_case(x, block, 0);
+    check_record_files(record);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::bad_data) {
+      throw;
+    }
+    // The run is complete without its record.
+    record = {};
+    record.files.push_back({"record-error.txt", std::string(error.what()) + "\n"});
+  }
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const CaseRecord::File& file : record.files) {
+    files.emplace_back(kWinnerFiles + file.name, file.bytes);
   }
   files.emplace_back(kWinnerRecord, make_record_csv(record));  // last: then all others are there
   FolderChecksums checksums(folder);
