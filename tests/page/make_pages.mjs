@@ -45,6 +45,15 @@ function make_function() {
   run_program('report', run, '--out', join(kFolder, 'function.html'), '--quiet');
 }
 
+// A run of a user's problem, which records signals and files of its winner.
+function make_own() {
+  const run = join(kFolder, 'own');
+  const program = join(import.meta.dirname ?? new URL('.', import.meta.url).pathname, '../plugins/problem.py');
+  const flags = ['--optimizer', 'random', '--budget', '60', '--out', run, '--quiet'];
+  run_program('optimize', `exec:python3 ${program} rich`, ...flags);
+  run_program('report', run, '--out', join(kFolder, 'own.html'), '--quiet');
+}
+
 function make_study() {
   const study = join(kFolder, 'study');
   run_program(
@@ -82,6 +91,7 @@ if (process.argv[2] !== undefined) {
   make_run();
   make_front();
   make_function();
+  make_own();
   make_study();
   make_comparisons();
   make_reproduction();

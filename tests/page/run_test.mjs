@@ -97,6 +97,22 @@ test('a run of several objectives and one of a function have pages, too', async 
   }
 });
 
+test("a run of a user's problem shows its words, limits, signals and files, and no arm", async () => {
+  const { page, expect_no_faults } = await open_run('own');
+  assert.deepEqual(await list_tabs(page), ['overview', 'training', 'response', 'winner']);
+  const variables = await page.locator('[data-figure=variables-table] tbody').innerText();
+  assert.match(variables, /integer[^]*plain, dear/);
+  assert.match(await page.locator('[data-figure=limits-table] tbody').innerText(), /heat[^]*W[^]*(met|missed)/);
+  assert.doesNotMatch(await page.locator('body').innerText(), /joint|torque/i);
+  await open_tab(page, 'winner');
+  assert.equal(await page.locator('[data-figure=winner-record] h3').innerText(), 'Signals: speed');
+  // dot.png does not begin as an image does, so it is only saved.
+  assert.equal(await page.locator('[data-figure=winner-files] img').count(), 0);
+  assert.deepEqual(await page.locator('[data-figure=winner-files] a').allInnerTexts(), ['dot.png', 'note.txt']);
+  expect_no_faults();
+  await page.close();
+});
+
 test('the replay plays, is scrubbed, and shows the robot', async () => {
   const { page, expect_no_faults } = await open_run();
   await open_replay(page);

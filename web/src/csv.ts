@@ -1,4 +1,4 @@
-// Writes tables as CSV (RFC 4180). Text that a spreadsheet would take for a formula gets an
+// Writes and reads tables as CSV (RFC 4180). Text that a spreadsheet would take for a formula gets an
 // apostrophe in front, because names may contain anything.
 import type { Cell, Column, DataTable, Value } from './model';
 
@@ -28,4 +28,44 @@ export function to_csv(table: DataTable): string {
     );
   });
   return lines.join('\r\n') + '\r\n';
+}
+
+// Returns the lines of a CSV text as cells. Empty lines are left out.
+export function parse_csv(text: string): string[][] {
+  const rows: string[][] = [];
+  let row: string[] = [];
+  let cell = '';
+  let quoted = false;
+  const close_row = () => {
+    row.push(cell);
+    cell = '';
+    if (row.length > 1 || row[0] !== '') {
+      rows.push(row);
+    }
+    row = [];
+  };
+  for (let i = 0; i < text.length; ++i) {
+    const letter = text.charAt(i);
+    if (quoted) {
+      if (letter !== '"') {
+        cell += letter;
+      } else if (text.charAt(i + 1) === '"') {
+        cell += letter;
+        ++i;
+      } else {
+        quoted = false;
+      }
+    } else if (letter === '"') {
+      quoted = true;
+    } else if (letter === ',') {
+      row.push(cell);
+      cell = '';
+    } else if (letter === '\n') {
+      close_row();
+    } else if (letter !== '\r') {
+      cell += letter;
+    }
+  }
+  close_row();
+  return rows;
 }

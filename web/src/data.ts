@@ -15,6 +15,7 @@ export interface Packed {
 export interface Quantity {
   name: string;
   unit: string;
+  own_unit?: boolean; // shown in this unit, as the problem has no arm; lengths of an arm are shown in mm
 }
 
 export interface Fact {
@@ -229,8 +230,40 @@ export interface RunData extends PageBase {
   front: RunFront | null; // null if there is only one objective
   requirements: RequirementLight[]; // for the winner on the test set; empty without a winner
   headline: Headline;
+  limits: WinnerLimit[]; // the winner's constraints on the test set; empty without a winner
+  metrics: WinnerMetric[]; // the winner's on the test set; empty for an arm
+  failure_reasons: FailureReason[]; // of training evaluations, the most frequent first
+  record: string | null; // winner-record.csv: signals of the winner on the first test case
+  files: WinnerFile[]; // that this case left
   arm: ArmEvidence | null; // null if the problem is not an arm
 }
+
+export interface WinnerLimit {
+  quantity: Quantity;
+  limit: number;
+  value: number | null; // null if no case has a number
+  is_met: boolean | null;
+}
+
+export interface WinnerMetric {
+  quantity: Quantity;
+  value: number | null;
+}
+
+export interface FailureReason {
+  reason: string;
+  count: number;
+}
+
+export interface WinnerFile {
+  name: string;
+  bytes: number;
+  type: string; // by its content: "image/png", "image/jpeg", "image/svg+xml", "text/csv", or "" for others
+  text: string | null; // of a CSV file
+  base64: string; // empty for a CSV file
+}
+
+export type VariableType = 'real' | 'integer' | 'category';
 
 // What the run recorded of its result and effort. The fields after `cases` are null without a winner.
 export interface Headline {
@@ -291,6 +324,8 @@ export interface Incumbents {
 export interface VariableHistory {
   name: string; // "joint_2.p"
   unit: string;
+  type: VariableType;
+  choices: string[]; // the words of a category; its values are their places, from 0
   lower: number;
   upper: number;
   start: number;
@@ -485,7 +520,16 @@ export interface StudyProblem {
   checkpoints: number[];
   targets: number[];
   fixed_targets: string[]; // in words
-  variables: { name: string; unit: string; lower: number; upper: number; start: number; logarithmic: boolean }[];
+  variables: {
+    name: string;
+    unit: string;
+    type: VariableType;
+    choices: string[];
+    lower: number;
+    upper: number;
+    start: number;
+    logarithmic: boolean;
+  }[];
   results: StudyOptimizerResult[]; // one per optimizer
   friedman: Friedman | null;
   pairs: StudyPair[];

@@ -2,7 +2,7 @@
 // browser and `armwright plot` use the same figures. Therefore this file and figures/ must not use
 // the DOM.
 import type { EChartsOption } from './charts/echarts';
-import type { Fact, PageBase, ReplaySet } from './data';
+import type { Fact, PageBase, ReplaySet, WinnerFile } from './data';
 import type { Look } from './charts/look';
 import type { Range } from './charts/zoom';
 
@@ -91,6 +91,15 @@ export interface ReplayItem {
   sets: ReplaySet[];
 }
 
+// Files that a problem left. Images are shown, and every file can be saved.
+export interface FilesItem {
+  kind: 'files';
+  id: string;
+  title: string;
+  caption: string;
+  files: WinnerFile[];
+}
+
 // A number that a reader looks for first.
 export interface Tile {
   label: string;
@@ -119,7 +128,7 @@ export interface SummaryItem {
   caption?: string;
 }
 
-export type Item = Figure | TableItem | TextItem | FactsItem | ReplayItem | SummaryItem;
+export type Item = Figure | TableItem | TextItem | FactsItem | ReplayItem | FilesItem | SummaryItem;
 
 export interface Tab {
   id: string;

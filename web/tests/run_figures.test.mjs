@@ -17,6 +17,7 @@ const {
   make_replay_set,
   make_reproduction_data,
   make_run_data,
+  read_signals,
 } = await load(`
   export { draw_svg, get_initial_picks } from './src/charts/svg';
   export { kDark, kLight } from './src/charts/look';
@@ -25,6 +26,7 @@ const {
   export { find_saturated } from './src/figures/joints';
   export { choose_rows } from './src/figures/replay_access';
   export { make_histogram } from './src/figures/test_errors';
+  export { read_signals } from './src/figures/winner';
   export { group_variables } from './src/figures/variables';
   export { make_replay_set, make_reproduction_data, make_run_data } from './tests/fixtures/pages';
 `);
@@ -185,6 +187,7 @@ test('what is missing is left out', () => {
     test: null,
     front: null,
     requirements: [],
+    failure_reasons: [],
     replays: [],
     variables: [],
     training: { ...training, ...empty, incumbents: no_incumbents },
@@ -463,4 +466,29 @@ test('a watched page of a run has the failures after the headline, or says that 
   assert.deepEqual(find(data, 'failures-so-far').table.rows, [['evaluation 3', 'diverged', 'joint_2 moves at 1e9 rad/s']]);
   data.finished = true;
   assert.deepEqual(ids(), usual);
+});
+
+test('a CSV text is signals only if all cells are numbers and the abscissa grows', () => {
+  const signals = read_signals('time [s],"speed, left [rad/s]",count\n0,1,2\n1,3,4\n');
+  assert.deepEqual(signals, [
+    { name: 'time', unit: 's', values: [0, 1] },
+    { name: 'speed, left', unit: 'rad/s', values: [1, 3] },
+    { name: 'count', unit: '', values: [2, 4] },
+  ]);
+  for (const text of ['', 't,x\n0,1\n', 't,x\n1,1\n0,1\n', 't,x\n0,a\n1,2\n', 't,x\n0,1\n1\n', 't,x\n0,\n1,2\n']) {
+    assert.equal(read_signals(text), null, JSON.stringify(text));
+  }
+});
+
+test('an objective in metres without an arm keeps its unit, and a category shows its words', () => {
+  const data = make_run_data();
+  data.arm = null;
+  data.replays = [];
+  data.requirements = [];
+  data.headline = { ...data.headline, value: 2, quantity: { name: 'sag', unit: 'm', own_unit: true }, test_cases: null };
+  data.variables = [{ ...data.variables[0], type: 'category', choices: ['plain', 'dear'], lower: 0, upper: 1, start: 0, winner: 1 }];
+  data.limits = [{ quantity: { name: 'width', unit: 'm', own_unit: true }, limit: 3, value: 4, is_met: false }];
+  assert.ok(find(data, 'tiles').tiles.some((tile) => tile.value === '2 m'));
+  assert.deepEqual(find(data, 'variables-table').table.rows[0].slice(4, 7), ['plain, dear', 'plain', 'dear']);
+  assert.deepEqual(find(data, 'limits-table').table.rows[0].map(get_value), ['width', 3, 4, 'm', '✗ missed']);
 });

@@ -169,12 +169,12 @@ json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& de
     }
   }
   const TrackingProblem* tracking = run.tracking();
-  return {
-      {"set", result.test_set},
-      {"quantity", make_quantity(result.tracking ? Quantity{"error", "m"} : get_target(result))},
-      {"engine", tracking != nullptr ? tracking->config().engines.judging_name : ""},
-      {"failure_error", finite_or_null(failure_error)},
-      {"designs", std::move(list)}};
+  return {{"set", result.test_set},
+          {"quantity",
+           run.make_quantity(result.tracking ? Quantity{"error", "m"} : get_target(result))},
+          {"engine", tracking != nullptr ? tracking->config().engines.judging_name : ""},
+          {"failure_error", finite_or_null(failure_error)},
+          {"designs", std::move(list)}};
 }
 
 json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& designs,

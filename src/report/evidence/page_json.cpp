@@ -43,8 +43,12 @@ json pack_u32(std::span<const std::uint32_t> values) {
   return {{"u32", pack(values)}};
 }
 
-json make_quantity(const Quantity& quantity) {
-  return {{"name", quantity.name}, {"unit", quantity.unit}};
+json make_quantity(const Quantity& quantity, bool own_unit) {
+  json made = {{"name", quantity.name}, {"unit", quantity.unit}};
+  if (own_unit) {
+    made["own_unit"] = true;
+  }
+  return made;
 }
 
 json make_fact(std::string_view label, std::string_view value) {

@@ -28,7 +28,8 @@ nlohmann::json finite_or_null(std::span<const double> values);
 nlohmann::json pack_f32(std::span<const float> values);          // {"f32": ...}
 nlohmann::json pack_u32(std::span<const std::uint32_t> values);  // {"u32": ...}
 
-nlohmann::json make_quantity(const Quantity& quantity);
+// Returns Quantity. With `own_unit` the page does not convert it, as for a problem without an arm.
+nlohmann::json make_quantity(const Quantity& quantity, bool own_unit = false);
 nlohmann::json make_fact(std::string_view label, std::string_view value);
 // Returns version and commit of the program that makes the page.
 nlohmann::json make_program();

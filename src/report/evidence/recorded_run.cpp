@@ -12,6 +12,7 @@
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/problem_loader.hpp"
+#include "report/evidence/page_json.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/incumbents.hpp"
 #include "study/run/run.hpp"
@@ -261,6 +262,10 @@ ProblemDescription RecordedRun::describe() const {
     description.limits = result->limits;
   }
   return description;
+}
+
+json RecordedRun::make_quantity(const Quantity& quantity) const {
+  return armwright::make_quantity(quantity, !has_arm());
 }
 
 std::vector<double> RecordedRun::find_best() const {

@@ -39,6 +39,10 @@ struct RecordedRun {
 
   // Returns the arm's problem; null for a function and if the problem cannot be rebuilt.
   const TrackingProblem* tracking() const { return problem ? problem->tracking() : nullptr; }
+  // Returns whether the problem is an arm, also if it cannot be rebuilt.
+  bool has_arm() const { return tracking() != nullptr || (result && result->tracking); }
+  // Returns Quantity of web/src/data.ts. Without an arm the page shows it in its own unit.
+  nlohmann::json make_quantity(const Quantity& quantity) const;
   // Returns the problem's description. Without the problem it has what the result records:
   // objectives and constraints, but no variables.
   ProblemDescription describe() const;

@@ -520,21 +520,22 @@ json make_cells(const StudyPlan& plan_a, const StudyResult& a, const StudyPlan& 
           pairs[1].push_back(found->second);
         }
       }
-      json cell = {{"problem", sanitize(problem)},
-                   {"optimizer", sanitize(optimizer)},
-                   {"quantity", make_quantity(result_a.quantity)},
-                   {"a", make_side(values_a)},
-                   {"b", make_side(values_b)},
-                   {"pairs", pairs[0].size()},
-                   {"wins", 0},
-                   {"ties", 0},
-                   {"losses", 0},
-                   {"a12", obstacle.empty() ? calc_effect(values_a, values_b, result_a.margin)
-                                            : json(nullptr)},
-                   {"p", nullptr},
-                   {"p_holm", nullptr},
-                   {"better", nullptr},
-                   {"untested", nullptr}};
+      json cell = {
+          {"problem", sanitize(problem)},
+          {"optimizer", sanitize(optimizer)},
+          {"quantity", make_quantity(result_a.quantity, !plan_a.problems[p].loaded.tracking())},
+          {"a", make_side(values_a)},
+          {"b", make_side(values_b)},
+          {"pairs", pairs[0].size()},
+          {"wins", 0},
+          {"ties", 0},
+          {"losses", 0},
+          {"a12",
+           obstacle.empty() ? calc_effect(values_a, values_b, result_a.margin) : json(nullptr)},
+          {"p", nullptr},
+          {"p_holm", nullptr},
+          {"better", nullptr},
+          {"untested", nullptr}};
       if (!unpaired.empty()) {
         cell["untested"] = unpaired;
       } else if (std::ssize(pairs[0]) < kFewestPairs) {

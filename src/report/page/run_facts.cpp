@@ -17,8 +17,9 @@ namespace {
 
 using nlohmann::json;
 
-std::string format_value(double value, const std::string& unit) {
-  if (unit == "m") {
+// Lengths of an arm are shown in millimetres. A problem without an arm keeps its own unit.
+std::string format_value(double value, const std::string& unit, bool has_arm) {
+  if (unit == "m" && has_arm) {
     return describe_number(1000 * value, "mm");
   }
   return describe_number(value, unit == "1" ? "" : unit, 6);
@@ -26,17 +27,19 @@ std::string format_value(double value, const std::string& unit) {
 
 class Facts {
  public:
+  explicit Facts(bool has_arm) : has_arm_(has_arm) {}
   void add(const std::string& label, const std::string& value) {
     if (!value.empty()) {
       list_.push_back(make_fact(label, value));
     }
   }
   void add(const std::string& label, const std::optional<double>& value, const std::string& unit) {
-    add(label, value ? format_value(*value, unit) : "");
+    add(label, value ? format_value(*value, unit, has_arm_) : "");
   }
   json take() { return std::move(list_); }
 
  private:
+  bool has_arm_ = false;
   json list_ = json::array();
 };
 
@@ -63,7 +66,7 @@ void add_setting(const RecordedRun& run, Facts& facts) {
   }
   for (const Limit& limit : run.describe().limits) {
     facts.add("Limit", fmt::format("{} at most {}", limit.quantity.name,
-                                   format_value(limit.value, limit.quantity.unit)));
+                                   format_value(limit.value, limit.quantity.unit, run.has_arm())));
   }
   facts.add("Optimizer", settings.at("optimizer").get<std::string>());
   facts.add("Options", describe_options(settings.at("options")));
@@ -138,7 +141,7 @@ void add_result(const RunResult& result, Facts& facts) {
 }  // namespace
 
 json make_run_facts(const RecordedRun& run) {
-  Facts facts;
+  Facts facts(run.has_arm());
   add_setting(run, facts);
   add_counts(run, facts);
   if (run.result) {
@@ -176,7 +179,7 @@ json make_headline(const RecordedRun& run, const History& history) {
     headline["test_cases"] = result.test_summary.cases;
     headline["total_torque_n_m"] = finite_or_null(find_total_torque(result));
   } else if (!result.test.objectives.empty()) {
-    headline["quantity"] = make_quantity(get_target(result));
+    headline["quantity"] = run.make_quantity(get_target(result));
     headline["value"] = finite_or_null(calc_target(result, result.test));
   }
   return headline;
@@ -190,7 +193,7 @@ json make_requirements(const RecordedRun& run) {
   for (const JudgedRequirement& judged :
        judge_requirements(run.result->requirements, run.result->test)) {
     const RequiredMetric& requirement = judged.requirement;
-    list.push_back({{"quantity", make_quantity(requirement.limit.quantity)},
+    list.push_back({{"quantity", run.make_quantity(requirement.limit.quantity)},
                     {"limit", requirement.limit.value},
                     {"value", judged.value ? finite_or_null(*judged.value) : json(nullptr)},
                     {"grade", to_string(judged.grade)},

@@ -146,6 +146,8 @@ json make_variables(const RecordedRun& run, const History& history) {
     const DecisionVariable& variable = description.variables[i];
     list.push_back({{"name", variable.name},
                     {"unit", variable.unit},
+                    {"type", to_string(variable.type)},
+                    {"choices", variable.choices},
                     {"lower", variable.lower},
                     {"upper", variable.upper},
                     {"start", variable.start},
@@ -204,7 +206,7 @@ json make_front(const RecordedRun& run) {
   }
   json objectives = json::array();
   for (const Quantity& objective : result.objectives) {
-    objectives.push_back(make_quantity(objective));
+    objectives.push_back(run.make_quantity(objective));
   }
   return {{"objectives", std::move(objectives)},
           {"points", std::move(points)},

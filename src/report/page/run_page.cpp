@@ -192,16 +192,22 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
       {"replays", json::array()},
       {"problem", run.problem_name},
       {"optimizer", optimizer},
-      {"quantity", make_quantity(quantity)},
+      {"quantity", run.make_quantity(quantity)},
       {"logarithmic", quantity.name.starts_with("ln(")},
       {"variables", make_variables(run, history)},
       {"front", make_front(run)},
       {"requirements", make_requirements(run)},
+      {"limits", make_limits(run)},
+      {"metrics", make_metrics(run)},
+      {"failure_reasons", make_failure_reasons(run)},
+      {"record", nullptr},
+      {"files", json::array()},
       {"arm", nullptr}};
   if (run.tracking() != nullptr) {
     add_arm(run, options, used, page, notes);
   } else {
     page["test"] = make_test_errors(run, {});
+    add_winner_record(run, page, notes);
   }
   page["training"] =
       make_training(run, history, make_incumbents(run, incumbents, history.by_generation, used));

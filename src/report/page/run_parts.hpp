@@ -50,4 +50,16 @@ nlohmann::json make_variables(const RecordedRun& run, const History& history);
 // Returns RunFront; null for a single objective or without a result.
 nlohmann::json make_front(const RecordedRun& run);
 
+// Returns a list of WinnerLimit: the winner's constraints on the test set. Empty without a winner.
+nlohmann::json make_limits(const RecordedRun& run);
+// Returns a list of WinnerMetric. Empty without a winner and for an arm, whose page has them already.
+nlohmann::json make_metrics(const RecordedRun& run);
+// Returns a list of FailureReason: how often training evaluations had no number, by reason, the
+// most frequent first.
+nlohmann::json make_failure_reasons(const RecordedRun& run);
+// Sets "record" and "files" of the page from the files that the run recorded of its winner. Adds a
+// note for each file that is not shown. Throws Error{bad_data} if a file differs from its checksum.
+void add_winner_record(const RecordedRun& run, nlohmann::json& page,
+                       std::vector<std::string>& notes);
+
 }  // namespace armwright

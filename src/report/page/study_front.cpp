@@ -59,14 +59,15 @@ json make_surfaces(std::span<const Points> fronts) {
 
 }  // namespace
 
-json make_study_front(const StudyPlan& plan, const ProblemDescription& problem,
+json make_study_front(const StudyPlan& plan, const StudyProblem& studied,
                       std::span<const CellOutcome> cells, const ProblemResult& result) {
   if (!result.has_front) {
     return nullptr;
   }
+  const ProblemDescription& problem = studied.loaded.problem->description();
   json objectives = json::array();
   for (const Quantity& objective : problem.objectives) {
-    objectives.push_back(make_quantity(objective));
+    objectives.push_back(make_quantity(objective, !studied.loaded.tracking()));
   }
   json optimizers = json::array();
   for (const StudyOptimizer& optimizer : plan.optimizers) {

@@ -22,7 +22,7 @@ nlohmann::json make_study_problem(const StudyPlan& plan, std::size_t problem,
                                   const std::filesystem::path& folder);
 
 // Returns StudyFront; null for a problem with one objective.
-nlohmann::json make_study_front(const StudyPlan& plan, const ProblemDescription& problem,
+nlohmann::json make_study_front(const StudyPlan& plan, const StudyProblem& problem,
                                 std::span<const CellOutcome> cells, const ProblemResult& result);
 
 nlohmann::json make_study_pairs(std::span<const PairResult> pairs);

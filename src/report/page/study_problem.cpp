@@ -161,6 +161,8 @@ json make_variables(const ProblemDescription& problem) {
   for (const DecisionVariable& variable : problem.variables) {
     list.push_back({{"name", variable.name},
                     {"unit", variable.unit},
+                    {"type", to_string(variable.type)},
+                    {"choices", variable.choices},
                     {"lower", variable.lower},
                     {"upper", variable.upper},
                     {"start", variable.start},
@@ -226,7 +228,7 @@ json make_study_problem(const StudyPlan& plan, std::size_t number,
   }
   return {{"label", problem.label},
           {"title", problem.loaded.title},
-          {"quantity", make_quantity(result.quantity)},
+          {"quantity", make_quantity(result.quantity, !problem.loaded.tracking())},
           {"has_front", result.has_front},
           {"resolution", result.margin.resolution},
           {"optimum", result.margin.optimum ? json(*result.margin.optimum) : json(nullptr)},
@@ -242,7 +244,7 @@ json make_study_problem(const StudyPlan& plan, std::size_t number,
           {"pairs", make_study_pairs(result.pairs)},
           {"order", result.order},
           {"missing", total - cells.size()},
-          {"front", make_study_front(plan, description, cells, result)}};
+          {"front", make_study_front(plan, problem, cells, result)}};
 }
 
 }  // namespace armwright

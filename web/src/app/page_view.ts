@@ -7,6 +7,7 @@ import { make_replay, type ReplayView } from '../replay/replay';
 import { make_clock, make_time_key, type Clock } from './clock';
 import { make, make_button } from './dom';
 import { make_figure_view } from './figure_view';
+import { make_files_view } from './files_view';
 import { make_filter_view } from './filter_view';
 import { make_progress_view } from './progress_view';
 import { make_summary_view } from './summary_view';
@@ -78,6 +79,8 @@ function make_view(page: Page, item: Item, look: Look, clock: Clock): View {
       return make_table_view(item);
     case 'text':
       return make_text_view(item);
+    case 'files':
+      return make_files_view(item);
     case 'facts':
       return make_still(item.id, item.title, 'full', make_facts(item.facts));
     case 'summary':

@@ -129,7 +129,7 @@ function make_headline(data: ComparisonData, studies: ComparedStudies): TextItem
 // ---------------------------------------------------------------- the grid
 
 function describe_side(side: ComparedCell['a'], cell: ComparedCell): string {
-  const unit = get_unit(cell.quantity.unit);
+  const unit = get_unit(cell.quantity);
   const spread =
     is_number(side.q1) && is_number(side.q3)
       ? ` (${format_number(convert(side.q1, unit))} to ${format_number(convert(side.q3, unit))})`

@@ -1,6 +1,6 @@
-// The units for readers: errors in millimetres, angles in degrees.
+// The units for readers: an arm's errors in millimetres and angles in degrees, other units as they are.
 import { shorten } from '../charts/names';
-import { kDegrees, kMillimetres } from '../numbers';
+import { format_number, kDegrees, kMillimetres } from '../numbers';
 import type { Quantity } from '../data';
 
 export interface Shown {
@@ -11,6 +11,9 @@ export interface Shown {
 
 export function get_shown(quantity: Quantity): Shown {
   const name = shorten(quantity.name);
+  if (quantity.own_unit) {
+    return { name, unit: quantity.unit === '1' ? '' : shorten(quantity.unit, 20), factor: 1 };
+  }
   switch (quantity.unit) {
     case 'm':
       return { name, unit: 'mm', factor: kMillimetres };
@@ -65,6 +68,11 @@ export const kAtLimit = 1 - 1e-4; // share of a limit from which a torque counts
 export function find_limit_share(effort: number, limits: readonly [number | null, number | null] | undefined): number | null {
   const limit = limits === undefined ? null : limits[effort < 0 ? 0 : 1];
   return is_number(limit) && limit !== 0 ? effort / limit : null;
+}
+
+// Returns the word of a category, or a number as a text. A value between two words is a number.
+export function format_choice(choices: string[], value: number | null): string {
+  return is_number(value) && choices[value] !== undefined ? shorten(choices[value], 24) : format_number(value);
 }
 
 // Returns "12 cases" or "1 case".

@@ -6,7 +6,7 @@ import type { Part } from '../charts/parts';
 import type { RunFront, VariableHistory } from '../data';
 import type { Choice, Figure, Picked, Value } from '../model';
 import { format_number } from '../numbers';
-import { are_positive, find_range, get_shown, name_axis } from './quantities';
+import { are_positive, find_range, format_choice, get_shown, name_axis } from './quantities';
 
 const kWide = 10; // ratio of the largest to the smallest value from which an axis is logarithmic
 
@@ -26,7 +26,11 @@ export function make_front_figure(front: RunFront, variables: VariableHistory[])
   const on_front = front.points.map((_, i) => i).filter((i) => front.points[i].on_front);
   const name_point = (i: number) =>
     `${shown.map((one, k) => `${one.name} ${format_number(value_of(i, k))} ${one.unit}`.trim()).join(', ')}. ` +
-    front.points[i].x.map((value, k) => `${variables[k] ? shorten(variables[k].name) : `x${k + 1}`} = ${format_number(value)}`).join(', ');
+    front.points[i].x
+      .map(
+        (value, k) => `${variables[k] ? shorten(variables[k].name) : `x${k + 1}`} = ${format_choice(variables[k]?.choices ?? [], value)}`,
+      )
+      .join(', ');
   return {
     kind: 'figure',
     id: 'front',
@@ -101,6 +105,7 @@ export function make_front_figure(front: RunFront, variables: VariableHistory[])
     },
     table: () => {
       const dimension = front.points[0].x.length;
+      const is_word = (k: number) => variables[k] !== undefined && variables[k].choices.length > 0;
       const names = front.points[0].x.map((_, k) => (variables[k] ? variables[k].name : `x${k + 1}`));
       return {
         columns: [
@@ -111,7 +116,9 @@ export function make_front_figure(front: RunFront, variables: VariableHistory[])
         rows: front.points.map((point, i) => [
           (i === front.winner ? 'winner' : point.on_front ? 'yes' : 'no') as Value,
           ...shown.map((_, k) => value_of(i, k)),
-          ...names.slice(0, dimension).map((_, k): Value => point.x[k] ?? null),
+          ...names
+            .slice(0, dimension)
+            .map((_, k): Value => (is_word(k) ? format_choice(variables[k].choices, point.x[k]) : (point.x[k] ?? null))),
         ]),
       };
     },

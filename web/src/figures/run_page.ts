@@ -14,6 +14,7 @@ import { make_errors_figure, make_failures_table } from './test_errors';
 import { has_training, make_fitness_figure } from './training';
 import { make_case_figure } from './trajectory';
 import { make_variables_figure } from './variables';
+import { make_limit_table, make_metric_table, make_reason_table, make_record_items, make_variable_table } from './winner';
 
 function is_there<T>(item: T | null): item is T {
   return item !== null;
@@ -46,7 +47,10 @@ export function make_run_tabs(data: RunData): Tab[] {
         arm === null || arm.health === null ? null : make_health_item(arm.health),
         arm === null ? null : make_results_table(data, arm),
         make_requirement_table(data.requirements),
-        fitness === null ? null : make_half(fitness, 'overview-fitness'),
+        make_variable_table(data),
+        make_limit_table(data),
+        make_metric_table(data),
+        fitness === null ? null : { ...make_half(fitness, 'overview-fitness'), ...(arm === null ? { width: 'full' as const } : {}) },
         response === null ? null : make_half(response, 'overview-response'),
         data.facts.length > 0 ? { kind: 'facts', id: 'facts', title: 'About', facts: data.facts } : null,
       ],
@@ -54,7 +58,12 @@ export function make_run_tabs(data: RunData): Tab[] {
     {
       id: 'training',
       title: 'Training',
-      items: [fitness, make_variables_figure(data), data.front === null ? null : make_front_figure(data.front, data.variables)],
+      items: [
+        fitness,
+        make_variables_figure(data),
+        data.front === null ? null : make_front_figure(data.front, data.variables),
+        make_reason_table(data),
+      ],
     },
     {
       id: 'response',
@@ -77,6 +86,7 @@ export function make_run_tabs(data: RunData): Tab[] {
         ...(set ? [...make_joint_figures(set, robot), make_momentary_figure(set), make_saturation_table(set, robot)] : []),
       ],
     },
+    { id: 'winner', title: 'Winner', items: make_record_items(data) },
     { id: 'design', title: 'Design', items: [arm === null ? null : make_design_table(arm)] },
   ]);
 }

@@ -28,7 +28,7 @@ import {
 const kMostLabels = 10;
 
 function draw_cost(look: Look, scope: Scope, problem: StudyProblem, target: number): EChartsOption {
-  const unit = get_unit(problem.quantity.unit);
+  const unit = get_unit(problem.quantity);
   const order = get_order(scope, problem);
   const times = order.map((o) => problem.results[o].running_times[target]);
   const costs = times.map((time) => (time ? time.expected : null));
@@ -141,7 +141,7 @@ export function make_cost_quality(scope: Scope): Figure | null {
     draw: (look, picked) => draw_cost(look, scope, get_problem(scope, picked), get_target(picked)),
     table: (picked) => {
       const problem = get_problem(scope, picked);
-      const unit = get_unit(problem.quantity.unit);
+      const unit = get_unit(problem.quantity);
       return {
         columns: [
           { label: 'optimizer' },

@@ -7,7 +7,7 @@ import { shorten } from '../charts/names';
 import { format_tick } from '../charts/scales';
 import type { StudyCell, StudyProblem } from '../data';
 import type { Cell, Choice, Figure, Picked, Value } from '../model';
-import { format_number } from '../numbers';
+import { format_choice } from './quantities';
 import { describe_cell } from './study_values';
 import {
   describe_size,
@@ -68,12 +68,12 @@ function make_axes(look: Look, variables: Variable[]): Part {
         shorten(variable.name) +
         (variable.unit === '' || variable.unit === '1' ? '' : ' (' + shorten(variable.unit, 12) + ')') +
         '; from ' +
-        format_number(variable.lower) +
+        format_choice(variable.choices, variable.lower) +
         ' to ' +
-        format_number(variable.upper) +
+        format_choice(variable.choices, variable.upper) +
         (variable.logarithmic ? ', logarithmic' : '') +
         '; start ' +
-        format_number(variable.start),
+        format_choice(variable.choices, variable.start),
     })),
     encode: { x: 0, y: [1, 2] },
     clip: false,
@@ -94,7 +94,10 @@ function make_axes(look: Look, variables: Variable[]): Part {
         y: at_y,
         rotation: is_upright ? Math.PI / 2 : 0,
         style: {
-          text: format_tick(Number(value.toPrecision(crowded ? 2 : 3))),
+          text:
+            variable.choices[value] === undefined
+              ? format_tick(Number(value.toPrecision(crowded ? 2 : 3)))
+              : shorten(variable.choices[value], 8),
           fill: look.muted,
           font: '10px ' + look.font,
           textAlign: is_upright ? (is_above ? 'left' : 'right') : 'center',
@@ -124,7 +127,8 @@ function make_axes(look: Look, variables: Variable[]): Part {
             y: bottom + (is_upright ? 44 : 22),
             rotation: is_upright ? Math.PI / 2 : Math.PI / 5,
             style: {
-              text: shorten(variable.name, 22) + (variable.logarithmic ? '' : ' (linear)'),
+              text:
+                shorten(variable.name, 22) + (variable.type === 'real' ? (variable.logarithmic ? '' : ' (linear)') : ` (${variable.type})`),
               fill: look.text,
               font: '10px ' + look.font,
               textAlign: 'right',
@@ -147,14 +151,14 @@ function draw_parallel(look: Look, scope: Scope, problem: StudyProblem, which: s
   lines.forEach((line) => {
     const grey = chosen >= 0 ? line.optimizer !== chosen : false;
     const style = get_style(look, scope, line.optimizer);
-    const note = describe_cell(scope, problem, line.optimizer, line.cell, get_unit(problem.quantity.unit));
+    const note = describe_cell(scope, problem, line.optimizer, line.cell, get_unit(problem.quantity));
     const color = grey ? look.muted : style.color;
     series.push({
       type: 'line',
       name: scope.names[line.optimizer],
       data: line.cell.x.map((value, i) => ({
         value: [i, place(problem.variables[i], value)],
-        note: note + '; ' + shorten(problem.variables[i].name) + ' = ' + format_number(value),
+        note: note + '; ' + shorten(problem.variables[i].name) + ' = ' + format_choice(problem.variables[i].choices, value),
         command: line.cell.command,
       })),
       symbol: make_symbol(look, style).symbol,
@@ -237,7 +241,7 @@ export function make_parallel(all: Scope): Figure | null {
       draw_parallel(look, scope, get_problem(scope, picked), get_picked(which, picked), get_picked(highlight, picked)),
     table: (picked) => {
       const problem = get_problem(scope, picked);
-      const unit = get_unit(problem.quantity.unit);
+      const unit = get_unit(problem.quantity);
       return {
         columns: [
           { label: 'optimizer' } as { label: string; unit?: string; numeric?: boolean },
@@ -246,7 +250,9 @@ export function make_parallel(all: Scope): Figure | null {
         ].concat(problem.variables.map((variable) => ({ label: variable.name, unit: variable.unit, numeric: true }))),
         rows: get_lines(scope, problem, get_picked(which, picked)).map((line): (Value | Cell)[] => {
           const value: Cell = { value: line.cell.value === null ? null : line.cell.value * unit.factor, command: line.cell.command };
-          return [scope.names[line.optimizer], line.cell.replicate, value].concat(line.cell.x) as (Value | Cell)[];
+          return [scope.names[line.optimizer], line.cell.replicate, value].concat(
+            line.cell.x.map((x, i): Value => problem.variables[i]?.choices[x] ?? x) as never[],
+          ) as (Value | Cell)[];
         }),
       };
     },

@@ -25,7 +25,7 @@ import {
 const kDrawnAtFirst = 4; // clouds of points hide each other sooner than curves do
 
 function draw_front(look: Look, scope: Scope, problem: StudyProblem, front: StudyFront, first: number, second: number): EChartsOption {
-  const units = front.objectives.map((objective) => get_unit(objective.unit));
+  const units = front.objectives.map((objective) => get_unit(objective));
   const at = (values: number[]): [number, number] => [values[first] * units[first].factor, values[second] * units[second].factor];
   const all = front.optimizers.reduce(
     (points, one) => points.concat(one.points.map((point) => at(point.values))),
@@ -148,7 +148,7 @@ export function make_front(all: Scope): Figure | null {
     table: (picked) => {
       const problem = get_problem(scope, picked);
       const front = problem.front as StudyFront;
-      const units = front.objectives.map((objective) => get_unit(objective.unit));
+      const units = front.objectives.map((objective) => get_unit(objective));
       const rows: Value[][] = [];
       const add = (o: number, what: string, values: number[]) =>
         rows.push([scope.names[o], what as Value].concat(units.map((unit, k) => (values[k] ?? NaN) * unit.factor)));

@@ -117,7 +117,7 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
         ' on ' +
         labels[p] +
         '; median ' +
-        describe_value(result?.median ?? null, get_unit(problem.quantity.unit)) +
+        describe_value(result?.median ?? null, get_unit(problem.quantity)) +
         (rank === null ? '' : ', rank ' + format_number(rank, 3)) +
         '; ' +
         describe_standing(scope, problem, standings[p], o);
@@ -151,7 +151,7 @@ function draw_grid(look: Look, scope: Scope, grid: Grid): EChartsOption {
       const mark = get_mark(standings[p].standings[order[row]]);
       const children: Part[] = [{ type: 'rect', shape: { x, y, width, height }, style: { fill, stroke: look.background, lineWidth: 1 } }];
       const number = rank === null ? '' : format_number(rank, 3);
-      const value = describe_value(result?.median ?? null, get_unit(problem.quantity.unit));
+      const value = describe_value(result?.median ?? null, get_unit(problem.quantity));
       const scale = Math.min(1, height / 14, width / 12);
       const middle = y + height / 2;
       const fits = height >= kSize;
@@ -292,7 +292,7 @@ export function make_standing_grid(scope: Scope): Figure | null {
         (rows, problem, p) =>
           rows.concat(
             grid.order.map((o) => {
-              const unit = get_unit(problem.quantity.unit);
+              const unit = get_unit(problem.quantity);
               const result = problem.results[o];
               return [
                 problem.label,

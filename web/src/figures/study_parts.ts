@@ -19,8 +19,8 @@ export interface Unit {
   unit: string; // "" if it has no unit
 }
 
-export function get_unit(unit: string): Unit {
-  return unit === 'm' ? { factor: kMillimetres, unit: 'mm' } : { factor: 1, unit: unit === '1' ? '' : shorten(unit, 12) };
+export function get_unit({ unit, own_unit }: Quantity): Unit {
+  return unit === 'm' && !own_unit ? { factor: kMillimetres, unit: 'mm' } : { factor: 1, unit: unit === '1' ? '' : shorten(unit, 12) };
 }
 
 export function convert(value: number | null | undefined, unit: Unit): number | null {
@@ -40,7 +40,7 @@ export function name_axis(name: string, unit: string): string {
 export function get_curve_name(problem: StudyProblem): { name: string; unit: Unit } {
   return problem.has_front
     ? { name: 'weighted sum of the objectives', unit: { factor: 1, unit: '' } }
-    : { name: problem.quantity.name, unit: get_unit(problem.quantity.unit) };
+    : { name: problem.quantity.name, unit: get_unit(problem.quantity) };
 }
 
 export function describe_value(value: number | null, unit: Unit, quantity?: Quantity): string {

@@ -35,7 +35,7 @@ function drop_empty_columns(table: DataTable, labels: string[]): DataTable {
   return { columns: kept.map((i) => table.columns[i]), rows: table.rows.map((row) => kept.map((i) => row[i])) };
 }
 
-const get_value_unit = (problem: StudyProblem) => get_unit(problem.quantity.unit);
+const get_value_unit = (problem: StudyProblem) => get_unit(problem.quantity);
 
 // The command of the best design's run makes the design again.
 function make_best_cell(value: number | null, replicate: number, result: StudyOptimizerResult): Cell {

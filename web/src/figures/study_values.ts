@@ -101,7 +101,7 @@ function make_boxes(look: Look, data: Part[], colors: string[]): Part {
 }
 
 function draw_values(look: Look, scope: Scope, problem: StudyProblem): EChartsOption {
-  const unit = get_unit(problem.quantity.unit);
+  const unit = get_unit(problem.quantity);
   const order = get_order(scope, problem);
   const results = order.map((o) => problem.results[o]);
   const values = results.reduce((all, one) => all.concat(one.cells.map((cell) => convert(cell.value, unit))), [] as (number | null)[]);
@@ -161,7 +161,7 @@ function draw_values(look: Look, scope: Scope, problem: StudyProblem): EChartsOp
 export function make_values(scope: Scope): Figure {
   const table = (picked: Picked) => {
     const problem = get_problem(scope, picked);
-    const unit = get_unit(problem.quantity.unit);
+    const unit = get_unit(problem.quantity);
     const rows: (Value | Cell)[][] = [];
     get_order(scope, problem).forEach((o) => {
       problem.results[o].cells.forEach((cell) => {

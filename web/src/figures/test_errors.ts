@@ -69,7 +69,7 @@ export function make_errors_figure(test: TestErrors): Figure | null {
     id: 'test-errors',
     title: `${shown.name.replace(/^./, (letter) => letter.toUpperCase())} of the test cases`,
     caption:
-      `The number of cases with an error of each size, of the ${count_of(test.designs[0].errors.length, 'case')} of ${test.set}, simulated by ${test.engine}. The bins have equal width` +
+      `The number of cases with an error of each size, of the ${count_of(test.designs[0].errors.length, 'case')} of ${test.set}${test.engine === '' ? '' : `, simulated by ${test.engine}`}. The bins have equal width` +
       `${log ? ' on the logarithmic axis' : ''}. ` +
       (limit !== null
         ? has_limit
@@ -82,7 +82,7 @@ export function make_errors_figure(test: TestErrors): Figure | null {
             .filter((_, i) => missing[i] > 0)
             .join(', ')}. `
         : '') +
-      `A tail to the right matters more than the mean: look at these motions in the replay.`,
+      (test.engine === '' ? '' : `A tail to the right matters more than the mean: look at these motions in the replay.`),
     draw: (look) => {
       const series: Part[] = counts.map((count, s) => {
         const points: Point[] = [[edges[0], 0]];

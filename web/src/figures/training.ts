@@ -34,9 +34,9 @@ export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
     caption:
       `The best and the average ${shown.name} in ${of_it}, against ${unit === 'generation' ? 'the generation' : 'the number of evaluations'}, ` +
       `on the training cases (schedule ${training.schedule}). Smaller values are better. ` +
-      (incumbents.index.length > 0
+      (incumbents.test.some(is_number)
         ? `The symbols are the incumbents on the ${count_of(incumbents.test_cases, 'case')} of ${incumbents.test_set}, ` +
-          `simulated by ${incumbents.engine}. Only these values show the quality of a design. `
+          `${incumbents.engine === '' ? 'computed for this page' : `simulated by ${incumbents.engine}`}. Only these values show the quality of a design. `
         : '') +
       (data.arm ? `The fitness of the thesis is the negative of the error, so it grows when the error falls. ` : '') +
       (training.schedule.indexOf('fixed') !== 0

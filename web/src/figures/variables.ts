@@ -6,7 +6,7 @@ import { shorten } from '../charts/names';
 import { make_band, make_line, type Part } from '../charts/parts';
 import type { RunData, VariableHistory } from '../data';
 import type { Choice, Figure, Value } from '../model';
-import { flatten, is_number, times } from './quantities';
+import { flatten, format_choice, is_number, times } from './quantities';
 import { name_progress } from './training';
 
 interface Group {
@@ -77,7 +77,7 @@ function draw_panel(look: Look, data: RunData, variable: VariableHistory, axis: 
   x.forEach((index, i) => {
     const low = times(variable.q1[i], sign);
     const high = times(variable.q3[i], sign);
-    if (is_number(low) && is_number(high)) {
+    if (variable.choices.length === 0 && is_number(low) && is_number(high)) {
       band.push([index, Math.min(low, high), Math.max(low, high)]);
     }
   });
@@ -105,6 +105,20 @@ function draw_panel(look: Look, data: RunData, variable: VariableHistory, axis: 
   return parts;
 }
 
+// Returns the axis of a variable's values. That of a category has its words as ticks.
+function make_value_axis(look: Look, variable: VariableHistory, index: number): Part {
+  const axis = make_number_axis(look, 'y', '', {
+    index,
+    log: get_log_sign(variable) !== 0,
+    values: [variable.lower, variable.upper].map(Math.abs),
+  });
+  if (variable.type === 'real') {
+    return axis;
+  }
+  const formatter = (value: number) => format_choice(variable.choices, value);
+  return { ...axis, minInterval: 1, axisLabel: { ...(axis.axisLabel as Part), ...(variable.choices.length > 0 ? { formatter } : {}) } };
+}
+
 export function make_variables_figure(data: RunData): Figure | null {
   if (data.variables.length === 0 || data.training.index.length === 0) {
     return null;
@@ -112,7 +126,7 @@ export function make_variables_figure(data: RunData): Figure | null {
   const groups = group_variables(data.variables);
   const choice: Choice = {
     id: 'group',
-    label: groups[0].name === '' ? 'variables' : 'joint',
+    label: groups[0].name === '' ? 'variables' : data.arm === null ? 'group' : 'joint',
     options: groups.map((group, i) => ({ value: String(i), label: name_group(group) })),
     initial: '0',
   };
@@ -142,13 +156,7 @@ export function make_variables_figure(data: RunData): Figure | null {
       return make_curve_plot(
         look,
         group.members.map((_, i) => make_number_axis(look, 'x', i + kColumns >= count ? unit : '', { index: i, max: 'dataMax' })),
-        group.members.map((variable, i) =>
-          make_number_axis(look, 'y', '', {
-            index: i,
-            log: get_log_sign(variable) !== 0,
-            values: [variable.lower, variable.upper].map(Math.abs),
-          }),
-        ),
+        group.members.map((variable, i) => make_value_axis(look, variable, i)),
         flatten(group.members.map((variable, i) => draw_panel(look, data, variable, i))),
         { grid: grids, title: group.members.map((variable, i) => make_panel_title(look, grids[i], name_variable(variable))) },
       );
