@@ -177,7 +177,7 @@ py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
 py::array_t<double> list_cases(const ProblemHandle& handle, const std::string& set_name,
                                std::uint64_t first, std::uint64_t count) {
   if (handle.loaded.tracking() == nullptr) {
-    throw Error(ErrorKind::usage, fmt::format("problem '{}' is a function, which has no test cases",
+    throw Error(ErrorKind::usage, fmt::format("problem '{}' has no arm, so its test cases have no points",
                                               handle.loaded.name));
   }
   const TestSet set = handle.loaded.tracking()->get_set(set_name);

@@ -76,6 +76,12 @@ class UserProblem final : public Problem {
                                          std::size_t cases) const override;
 
   const UserDescription& user_description() const { return program_.description; }
+  void require_start() const {
+    if (!program_.start) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("problem '{}': {}", sanitize(program_.name), program_.why_not));
+    }
+  }
   Evaluation evaluate_answer(const CaseJob& job, CaseAnswer answer) const {
     const std::vector<CaseOutcome> outcomes = {make_outcome(job, std::move(answer))};
     return aggregate(job.x, outcomes);
@@ -114,10 +120,7 @@ class UserProblem final : public Problem {
   }
 
   std::unique_ptr<CaseServer> take_server() const {
-    if (!program_.start) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("problem '{}': {}", sanitize(program_.name), program_.why_not));
-    }
+    require_start();
     return pool_.take();
   }
 
@@ -366,6 +369,12 @@ std::shared_ptr<const Problem> make_user_problem(UserProgram program) {
 const UserDescription* find_user_description(const Problem& problem) {
   const auto* user = dynamic_cast<const UserProblem*>(&problem);
   return user == nullptr ? nullptr : &user->user_description();
+}
+
+void require_server(const Problem& problem) {
+  if (const auto* user = dynamic_cast<const UserProblem*>(&problem)) {
+    user->require_start();
+  }
 }
 
 Evaluation make_evaluation(const Problem& problem, const CaseJob& job, CaseAnswer answer) {
