@@ -11,7 +11,9 @@
 #include "base/error.hpp"
 #include "host.hpp"
 #include "parts.hpp"
+#include "base/text.hpp"
 #include "problems/config/path_survey.hpp"
+#include "problems/user/user_problem.hpp"
 #include "study/executor/case_executor.hpp"
 #include "study/run/run_observer.hpp"
 #include "user_problems.hpp"
@@ -194,6 +196,28 @@ py::array_t<double> list_cases(const ProblemHandle& handle, const std::string& s
   return cases;
 }
 
+// Returns the names of what the user's problem answers: objectives, constraints and metrics.
+py::tuple list_outputs(const ProblemHandle& handle) {
+  const UserDescription* description = find_user_description(*handle.loaded.problem);
+  if (description == nullptr) {
+    throw Error(ErrorKind::usage,
+                fmt::format("armwright simulates {} itself; optimize() runs it. Ask and tell need a "
+                            "problem of your own",
+                            sanitize(handle.loaded.name)));
+  }
+  std::vector<std::string> objectives, constraints, metrics;
+  for (const UserObjective& objective : description->objectives) {
+    objectives.push_back(objective.quantity.name);
+  }
+  for (const UserConstraint& constraint : description->constraints) {
+    constraints.push_back(constraint.quantity.name);
+  }
+  for (const Quantity& metric : description->metrics) {
+    metrics.push_back(metric.name);
+  }
+  return py::make_tuple(objectives, constraints, metrics);
+}
+
 }  // namespace
 
 LoadedProblem load_for_call(const ProblemHandle& handle, Host& host, unsigned jobs) {
@@ -236,6 +260,7 @@ void add_problems(py::module_& module) {
       .def("describe", [](const ProblemHandle& handle) { return describe(handle.loaded).dump(); })
       .def("penalty",
            [](const ProblemHandle& handle) { return handle.loaded.problem->penalty_objectives(); })
+      .def("outputs", &list_outputs)
       .def("check_paths", [](const ProblemHandle& handle) { return check_paths(handle.loaded); })
       .def("cases", &list_cases)
       .def("evaluate",
