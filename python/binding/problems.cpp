@@ -9,9 +9,9 @@
 
 #include "arrays.hpp"
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "host.hpp"
 #include "parts.hpp"
-#include "base/text.hpp"
 #include "problems/config/path_survey.hpp"
 #include "problems/user/user_problem.hpp"
 #include "study/executor/case_executor.hpp"
@@ -179,8 +179,9 @@ py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
 py::array_t<double> list_cases(const ProblemHandle& handle, const std::string& set_name,
                                std::uint64_t first, std::uint64_t count) {
   if (handle.loaded.tracking() == nullptr) {
-    throw Error(ErrorKind::usage, fmt::format("problem '{}' has no arm, so its test cases have no points",
-                                              handle.loaded.name));
+    throw Error(ErrorKind::usage,
+                fmt::format("problem '{}' has no arm, so its test cases have no points",
+                            handle.loaded.name));
   }
   const TestSet set = handle.loaded.tracking()->get_set(set_name);
   const std::size_t points = count > 0 ? set.make_case(first).points_m.size() : 0;
@@ -200,10 +201,11 @@ py::array_t<double> list_cases(const ProblemHandle& handle, const std::string& s
 py::tuple list_outputs(const ProblemHandle& handle) {
   const UserDescription* description = find_user_description(*handle.loaded.problem);
   if (description == nullptr) {
-    throw Error(ErrorKind::usage,
-                fmt::format("armwright simulates {} itself; optimize() runs it. Ask and tell need a "
-                            "problem of your own",
-                            sanitize(handle.loaded.name)));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("armwright simulates {} itself; optimize() runs it. Ask and tell need a "
+                    "problem of your own",
+                    sanitize(handle.loaded.name)));
   }
   std::vector<std::string> objectives, constraints, metrics;
   for (const UserObjective& objective : description->objectives) {

@@ -83,9 +83,9 @@ py::tuple ask_for_points(const ProblemHandle& problem, const py::object& optimiz
   request.plan =
       make_plan(load_for_call(problem, host, place.jobs), load_row(optimizer, host), question);
   request.folder = place.choose(make_run_name(request.plan));
-  request.command_line = command.empty() ? std::vector<std::string>{"armwright", "ask",
-                                                                    request.folder.string()}
-                                         : command;
+  request.command_line = command.empty()
+                             ? std::vector<std::string>{"armwright", "ask", request.folder.string()}
+                             : command;
   AskOutcome outcome;
   host.run([&] { outcome = ask(request, count, host); });
   const auto list = [](const std::vector<AskedPoint>& points) {
@@ -154,11 +154,11 @@ void add_runs(py::module_& module) {
     return ask_for_points(problem, optimizer, {std::move(options), seed, budget, {}, {}},
                           {std::move(out), false, 1, {}}, command, count, listener);
   });
-  module.def("tell", [](const ProblemHandle& problem, const std::string& folder,
-                        const std::string& line) {
-    const Problem& own = *problem.loaded.problem;
-    tell(folder, own, read_told(line, "tell()", own));
-  });
+  module.def("tell",
+             [](const ProblemHandle& problem, const std::string& folder, const std::string& line) {
+               const Problem& own = *problem.loaded.problem;
+               tell(folder, own, read_told(line, "tell()", own));
+             });
   module.def("load_result", [](const std::string& folder) { return to_json(load_result(folder)); });
   module.def("read_history", [](const std::string& folder) { return read_history(folder); });
 }

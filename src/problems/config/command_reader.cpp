@@ -441,9 +441,10 @@ void load_external(const ConfigTable& table, LoadedProblem& loaded) {
   const DescriptionTables tables = get_description_tables(table);
   UserProgram program{
       .name = loaded.name,
-      .why_not = "its file has kind = \"external\", so armwright cannot compute it. 'armwright ask "
-                 "RUN --problem FILE' hands out its points, and 'armwright tell RUN RESULTS' takes "
-                 "the results"};
+      .why_not =
+          "its file has kind = \"external\", so armwright cannot compute it. 'armwright ask "
+          "RUN --problem FILE' hands out its points, and 'armwright tell RUN RESULTS' takes "
+          "the results"};
   program.description.name = loaded.name;
   read_description(tables, program.description);
   check_description(program.description, [&](const std::string& field, const std::string& fault) {

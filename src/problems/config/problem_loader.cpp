@@ -332,6 +332,9 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
     load_analytic(table, loaded);
   } else if (kind == "program" || kind == "command" || kind == "external") {
     settle_program(table, loaded);
+    if (kind != "program") {  // a record is read without the file that gives the name
+      table.settle(kProblemName, loaded.name);
+    }
   } else {
     load_tracking(table, engines, loaded);
     if (table.get_or(kProblemName, "").find(kRobotInName) != std::string::npos) {
