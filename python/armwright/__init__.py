@@ -22,6 +22,7 @@ from .optimizer import CAPABILITIES, Evaluator, Finding, Optimizer, OptimizerInf
 from .problem import DesignEvaluation, Evaluations, Problem, list_designs, list_problems, load_problem
 from .progress import Progress
 from .run import History, Run, load_run, optimize
+from .search import AskedPoint, Search
 from .server import serve
 from .study import Study, compare, load_study
 from .user_problem import Answer, Case, Category, Constraint, Failed, Integer, Objective, Real, Record, UserProblem, make_problem
@@ -31,6 +32,7 @@ __version__: str = _armwright.version()
 __all__ = [
     "Answer",
     "ArmwrightWarning",
+    "AskedPoint",
     "BadDataError",
     "BusyError",
     "CAPABILITIES",
@@ -58,6 +60,7 @@ __all__ = [
     "Record",
     "Run",
     "Scores",
+    "Search",
     "Study",
     "UsageError",
     "UserProblem",

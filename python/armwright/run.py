@@ -20,7 +20,7 @@ from .problem import STATUSES, Problem, load_problem
 from .progress import Listener, Show
 from .user_problem import AnyUserProblem
 
-_LARGEST_SEED = 2**63 - 1
+LARGEST_SEED = 2**63 - 1
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ def load_run(folder: Union[str, Path]) -> Run:
         raise BadDataError(f"{file}: is not a manifest that armwright wrote ({error!r})") from None
 
 
-def _own_command() -> list[str]:
+def own_command() -> list[str]:
     """Returns the command that runs this script again, for runs that no command of the program can continue."""
     main = sys.modules.get("__main__")
     script = getattr(main, "__file__", None)
@@ -189,7 +189,7 @@ def _own_command() -> list[str]:
 def _make_command(problem: Problem, optimizer: AnyOptimizer, settings: dict[str, Optional[str]], options: list[str]) -> list[str]:
     """Returns the command that continues the run. The program can do this if neither optimizer nor problem is a class."""
     if not isinstance(optimizer, str) or problem._inner.is_python:
-        return _own_command()
+        return own_command()
     words = ["armwright", "optimize", problem._inner.asked_name, "--optimizer", optimizer]
     for setting in problem._inner.settings:
         words += ["--set", setting]
@@ -263,7 +263,7 @@ def optimize(
     chosen: AnyOptimizer = problem.optimizer if optimizer is None else optimizer
     row = to_row(chosen)
     texts = to_options(options)
-    seed = to_whole("seed", seed, _LARGEST_SEED)
+    seed = to_whole("seed", seed, LARGEST_SEED)
     command = _make_command(problem, chosen, {"--seed": str(seed), "--budget": None if budget is None else str(budget),
                                               "--schedule": schedule, "--racing": racing}, texts)
     with Listener(progress) as listener:

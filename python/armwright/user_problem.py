@@ -317,7 +317,54 @@ def is_user_problem(problem: object) -> bool:
     return isinstance(problem, UserProblem) or (isinstance(problem, type) and issubclass(problem, UserProblem))
 
 
-class PythonProblem:
+class AnswerForm:
+    """Converts what evaluate() returned for a point into an answer of the protocol, for a problem with these objectives, constraints and metrics."""
+
+    def __init__(self, objectives: Sequence[str], constraints: Sequence[str], metrics: Sequence[str]) -> None:
+        self._outputs = [*objectives, *constraints, *metrics]
+        self._objectives, self._constraints = len(objectives), len(constraints)
+        self._is_single = len(self._outputs) == 1
+
+    def convert(self, returned: Any, wants_residuals: bool) -> Any:
+        """Returns the answer in the form of the protocol. The host refuses an answer that breaks the contract, so it gets a text that says how."""
+        try:
+            if isinstance(returned, Failed):
+                return {"status": returned.status, "reason": returned.reason}
+            if isinstance(returned, Mapping):
+                missing = [name for name in self._outputs if name not in returned]
+                unknown = [name for name in returned if name not in self._outputs]
+                if missing or unknown:
+                    raise _Wrong(f"a dict without {missing[0]!r}" if missing else f"a dict with the unknown name {unknown[0]!r}")
+                returned = [returned[name] for name in self._outputs]
+            if isinstance(returned, Answer):
+                return self._convert_answer(returned, wants_residuals)
+            if isinstance(returned, _Wrong):
+                raise returned
+            if isinstance(returned, str):
+                raise TypeError
+            values = _to_floats(returned) if isinstance(returned, (list, tuple)) or np.ndim(returned) > 0 else [float(returned)]
+            if self._is_single and len(values) == 1:
+                return values[0]
+            ends = (self._objectives, self._objectives + self._constraints)
+            return {"objectives": values[:ends[0]], "constraints": values[ends[0]:ends[1]], "metrics": values[ends[1]:]}
+        except _Wrong as wrong:
+            return {"objectives": str(wrong)}
+        except (TypeError, ValueError, OverflowError):
+            return {"objectives": f"{type(returned).__name__}: {_shorten(repr(returned))}"}
+
+    def _convert_answer(self, answer: Answer, wants_residuals: bool) -> dict[str, Any]:
+        objectives = _to_floats(answer.objectives)
+        residuals = None if answer.residuals is None else _to_floats(answer.residuals)
+        if not objectives and residuals is not None:
+            objectives = [math.fsum(one * one for one in residuals)]
+        converted: dict[str, Any] = {"objectives": objectives, "constraints": _to_floats(answer.constraints),
+                                     "metrics": _to_floats(answer.metrics)}
+        if wants_residuals and residuals is not None:
+            converted["residuals"] = residuals
+        return converted
+
+
+class PythonProblem(AnswerForm):
     """A problem in the form that the library and the protocol of docs/problem-protocol.md take. UsageError says what is wrong with it."""
 
     def __init__(self, problem: AnyUserProblem) -> None:
@@ -351,9 +398,7 @@ class PythonProblem:
         except TypeError as error:
             raise UsageError(f"{cls.__name__} describes itself with a value that is no number and no text: {error}") from None
         self._names = [one["name"] for one in variables]
-        self._outputs = [one["name"] for one in objectives + constraints + metrics]
-        self._objectives, self._constraints = len(objectives), len(constraints)
-        self._is_single = len(self._outputs) == 1
+        super().__init__(*([one["name"] for one in kind] for kind in (objectives, constraints, metrics)))
         self._is_all_real = all("type" not in one for one in variables)
 
     @property
@@ -400,7 +445,7 @@ class PythonProblem:
                     returned = evaluate(point, case)
                 except (Exception, SystemExit) as exception:
                     returned = _make_failure(exception)
-                yield returned if self._is_single and isinstance(returned, float) else self._convert(returned, wants_residuals)
+                yield returned if self._is_single and isinstance(returned, float) else self.convert(returned, wants_residuals)
             return
         try:
             all_returned: list[Any] = list(self.problem.evaluate_batch(points, cases))
@@ -409,45 +454,7 @@ class PythonProblem:
         if len(all_returned) != len(cases):
             all_returned = [_Wrong(f"evaluate_batch() returned {len(all_returned)} answers to {len(cases)} points")] * len(cases)
         for returned in all_returned:
-            yield self._convert(returned, wants_residuals)
-
-    def _convert(self, returned: Any, wants_residuals: bool) -> Any:
-        """Returns the answer in the form of the protocol. The host refuses an answer that breaks the contract, so it gets a text that says how."""
-        try:
-            if isinstance(returned, Failed):
-                return {"status": returned.status, "reason": returned.reason}
-            if isinstance(returned, Mapping):
-                missing = [name for name in self._outputs if name not in returned]
-                unknown = [name for name in returned if name not in self._outputs]
-                if missing or unknown:
-                    raise _Wrong(f"a dict without {missing[0]!r}" if missing else f"a dict with the unknown name {unknown[0]!r}")
-                returned = [returned[name] for name in self._outputs]
-            if isinstance(returned, Answer):
-                return self._convert_answer(returned, wants_residuals)
-            if isinstance(returned, _Wrong):
-                raise returned
-            if isinstance(returned, str):
-                raise TypeError
-            values = _to_floats(returned) if isinstance(returned, (list, tuple)) or np.ndim(returned) > 0 else [float(returned)]
-            if self._is_single and len(values) == 1:
-                return values[0]
-            ends = (self._objectives, self._objectives + self._constraints)
-            return {"objectives": values[:ends[0]], "constraints": values[ends[0]:ends[1]], "metrics": values[ends[1]:]}
-        except _Wrong as wrong:
-            return {"objectives": str(wrong)}
-        except (TypeError, ValueError, OverflowError):
-            return {"objectives": f"{type(returned).__name__}: {_shorten(repr(returned))}"}
-
-    def _convert_answer(self, answer: Answer, wants_residuals: bool) -> dict[str, Any]:
-        objectives = _to_floats(answer.objectives)
-        residuals = None if answer.residuals is None else _to_floats(answer.residuals)
-        if not objectives and residuals is not None:
-            objectives = [math.fsum(one * one for one in residuals)]
-        converted: dict[str, Any] = {"objectives": objectives, "constraints": _to_floats(answer.constraints),
-                                     "metrics": _to_floats(answer.metrics)}
-        if wants_residuals and residuals is not None:
-            converted["residuals"] = residuals
-        return converted
+            yield self.convert(returned, wants_residuals)
 
     def _record(self, message: dict[str, Any]) -> dict[str, Any]:
         record: Any = self.problem.record(self._make_points(message)[0], self._make_cases(message)[0])

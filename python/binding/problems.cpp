@@ -9,9 +9,11 @@
 
 #include "arrays.hpp"
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "host.hpp"
 #include "parts.hpp"
 #include "problems/config/path_survey.hpp"
+#include "problems/user/user_problem.hpp"
 #include "study/executor/case_executor.hpp"
 #include "study/run/run_observer.hpp"
 #include "user_problems.hpp"
@@ -177,8 +179,9 @@ py::tuple evaluate(const ProblemHandle& handle, const Numbers& points,
 py::array_t<double> list_cases(const ProblemHandle& handle, const std::string& set_name,
                                std::uint64_t first, std::uint64_t count) {
   if (handle.loaded.tracking() == nullptr) {
-    throw Error(ErrorKind::usage, fmt::format("problem '{}' is a function, which has no test cases",
-                                              handle.loaded.name));
+    throw Error(ErrorKind::usage,
+                fmt::format("problem '{}' has no arm, so its test cases have no points",
+                            handle.loaded.name));
   }
   const TestSet set = handle.loaded.tracking()->get_set(set_name);
   const std::size_t points = count > 0 ? set.make_case(first).points_m.size() : 0;
@@ -192,6 +195,29 @@ py::array_t<double> list_cases(const ProblemHandle& handle, const std::string& s
     }
   }
   return cases;
+}
+
+// Returns the names of what the user's problem answers: objectives, constraints and metrics.
+py::tuple list_outputs(const ProblemHandle& handle) {
+  const UserDescription* description = find_user_description(*handle.loaded.problem);
+  if (description == nullptr) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("armwright simulates {} itself; optimize() runs it. Ask and tell need a "
+                    "problem of your own",
+                    sanitize(handle.loaded.name)));
+  }
+  std::vector<std::string> objectives, constraints, metrics;
+  for (const UserObjective& objective : description->objectives) {
+    objectives.push_back(objective.quantity.name);
+  }
+  for (const UserConstraint& constraint : description->constraints) {
+    constraints.push_back(constraint.quantity.name);
+  }
+  for (const Quantity& metric : description->metrics) {
+    metrics.push_back(metric.name);
+  }
+  return py::make_tuple(objectives, constraints, metrics);
 }
 
 }  // namespace
@@ -236,6 +262,7 @@ void add_problems(py::module_& module) {
       .def("describe", [](const ProblemHandle& handle) { return describe(handle.loaded).dump(); })
       .def("penalty",
            [](const ProblemHandle& handle) { return handle.loaded.problem->penalty_objectives(); })
+      .def("outputs", &list_outputs)
       .def("check_paths", [](const ProblemHandle& handle) { return check_paths(handle.loaded); })
       .def("cases", &list_cases)
       .def("evaluate",

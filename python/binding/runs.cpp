@@ -9,6 +9,7 @@
 #include "host.hpp"
 #include "parts.hpp"
 #include "study/journal/journal.hpp"
+#include "study/run/ask_tell.hpp"
 #include "study/run/run.hpp"
 #include "study/run/run_folder.hpp"
 
@@ -71,6 +72,33 @@ py::tuple optimize(const ProblemHandle& problem, const py::object& optimizer,
                         result ? py::object(py::str(to_json(*result))) : py::none());
 }
 
+// Returns the run's folder, the points that are handed out and those that wait, each as (identifier,
+// values), and whether the run has ended. Without a command, `armwright ask` continues the run.
+py::tuple ask_for_points(const ProblemHandle& problem, const py::object& optimizer,
+                         const RunQuestion& question, const Place& place,
+                         const std::vector<std::string>& command, std::size_t count,
+                         const py::object& listener) {
+  Host host(listener);
+  RunRequest request;
+  request.plan =
+      make_plan(load_for_call(problem, host, place.jobs), load_row(optimizer, host), question);
+  request.folder = place.choose(make_run_name(request.plan));
+  request.command_line = command.empty()
+                             ? std::vector<std::string>{"armwright", "ask", request.folder.string()}
+                             : command;
+  AskOutcome outcome;
+  host.run([&] { outcome = ask(request, count, host); });
+  const auto list = [](const std::vector<AskedPoint>& points) {
+    std::vector<std::pair<std::uint64_t, std::vector<double>>> pairs;
+    for (const AskedPoint& point : points) {
+      pairs.emplace_back(point.id, point.x);
+    }
+    return pairs;
+  };
+  return py::make_tuple(request.folder.string(), list(outcome.points), list(outcome.waiting),
+                        outcome.result.has_value());
+}
+
 template <class Number>
 py::array_t<Number> copy_array(const std::vector<Number>& values) {
   return py::array_t<Number>(static_cast<py::ssize_t>(values.size()), values.data());
@@ -118,6 +146,19 @@ void add_runs(py::module_& module) {
                     {std::move(options), seed, budget, std::move(schedule), std::move(racing)},
                     {std::move(out), another, jobs, time_limit_s}, command, listener);
   });
+  module.def("ask", [](const ProblemHandle& problem, const py::object& optimizer,
+                       std::vector<std::string> options, std::uint64_t seed,
+                       std::optional<std::int64_t> budget, std::optional<std::string> out,
+                       const std::vector<std::string>& command, std::size_t count,
+                       const py::object& listener) {
+    return ask_for_points(problem, optimizer, {std::move(options), seed, budget, {}, {}},
+                          {std::move(out), false, 1, {}}, command, count, listener);
+  });
+  module.def("tell",
+             [](const ProblemHandle& problem, const std::string& folder, const std::string& line) {
+               const Problem& own = *problem.loaded.problem;
+               tell(folder, own, read_told(line, "tell()", own));
+             });
   module.def("load_result", [](const std::string& folder) { return to_json(load_result(folder)); });
   module.def("read_history", [](const std::string& folder) { return read_history(folder); });
 }

@@ -17,7 +17,7 @@ class ExamplesTest(FolderTest):
         return done.stdout
 
     def test_all_are_tried(self):
-        self.assertEqual({path.name for path in EXAMPLES.glob("*.py")}, {"scipy_optimize.py", "plot_study.py", "own_optimizer.py"})
+        self.assertEqual({path.name for path in EXAMPLES.glob("*.py")}, {"scipy_optimize.py", "plot_study.py", "own_optimizer.py", "own_problem.py"})
 
     def test_scipy(self):
         told = self.run_example("scipy_optimize.py", "4")
@@ -29,6 +29,11 @@ class ExamplesTest(FolderTest):
         self.run_example("plot_study.py")
         self.assertEqual(pathlib.Path("study.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.assertIn("other.png shows results/plot_study", self.run_example("plot_study.py", "results/plot_study", "other.png"))
+
+    def test_own_problem(self):
+        told = self.run_example("own_problem.py", "600")
+        self.assertRegex(told, r"cmaes: 0\.\d+ kg with")
+        self.assertIn("report results/springs makes", told)
 
     def test_own_optimizer_and_its_fifteen_lines(self):
         told = self.run_example("own_optimizer.py", "2", "60")

@@ -94,7 +94,7 @@ class UserProblemTest(FolderTest):
     def test_a_case_that_raises_or_has_no_number_fails_with_the_reason(self):
         for jobs in (1, 2):
             found = armwright.load_problem(Bowl).evaluate([[1, 1], [4.6, 1], [4.4, 1]], jobs=jobs)
-            self.assertEqual(found.reasons, {1: "ValueError: too far: <object object at 0x...>", 2: "its objective 'f' is not a number"})
+            self.assertEqual(found.reasons, {1: "ValueError: too far: <object object at 0x...>", 2: "its objective 'f' is not a finite number"})
             self.assertEqual(found.values[0], 0)
 
     def test_a_worker_that_crashes_or_hangs_costs_one_case(self):

@@ -192,6 +192,15 @@ std::string format_text(const EvaluatedDesign& evaluated, const Style& style) {
          format_profile(evaluated, style);
 }
 
+bool is_arm_design(const std::string& design) {
+  try {
+    load_design(design);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 // Returns the problem if it is one of the user's own, without an arm.
 std::optional<LoadedProblem> load_own_problem(const EvaluateOptions& options) {
   if (options.problem.empty() || !options.overrides.robot.empty()) {
@@ -204,7 +213,7 @@ std::optional<LoadedProblem> load_own_problem(const EvaluateOptions& options) {
     }
   } catch (const Error&) {
     // What an arm's problem lacks may come from the design; load_design_and_problem() says more.
-    if (options.problem.starts_with("exec:")) {
+    if (!is_arm_design(options.design)) {
       throw;
     }
   }

@@ -1,5 +1,5 @@
 // [command], [[variable]], [[objective]], [[constraint]], [[metric]] and [cases]: a problem that is
-// a command per case.
+// a command per case. The tables of the description are also those of the kind external.
 
 #include <fmt/format.h>
 
@@ -333,6 +333,34 @@ struct DescriptionTables {
   }
 };
 
+DescriptionTables get_description_tables(const ConfigTable& table) {
+  return {table, table.get_tables_or_empty(kUserVariableSettings),
+          table.get_tables_or_empty(kUserObjectiveSettings),
+          table.get_tables_or_empty(kUserConstraintSettings),
+          table.get_tables_or_empty(kUserMetricSettings)};
+}
+
+// Reads variables, objectives, constraints and metrics into the description.
+void read_description(const DescriptionTables& tables, UserDescription& description) {
+  for (const ConfigTable& one : tables.variables) {
+    description.variables.push_back(read_variable_table(one));
+  }
+  for (const ConfigTable& one : tables.objectives) {
+    description.objectives.push_back({.quantity = {read_plain_name(one), one.get(kTableUnit)},
+                                      .is_maximised = one.get_choice(kDirection) == 1,
+                                      .weight = one.get(kObjectiveWeight),
+                                      .penalty = one.find(kObjectivePenalty),
+                                      .bound = one.find(kObjectiveBound)});
+  }
+  for (const ConfigTable& one : tables.constraints) {
+    description.constraints.push_back(
+        {{read_plain_name(one), one.get(kTableUnit)}, one.find(kUserLimit)});
+  }
+  for (const ConfigTable& one : tables.metrics) {
+    description.metrics.push_back({read_plain_name(one), one.get(kTableUnit)});
+  }
+}
+
 }  // namespace
 
 const SettingTable kUserVariableSettings{
@@ -368,30 +396,13 @@ void load_command(const ConfigTable& table, const std::filesystem::path& path,
   CommandPlan plan;
   plan.name = command.get(kCommandRun);
   plan.description.name = loaded.name;
-  DescriptionTables tables{table, table.get_tables_or_empty(kUserVariableSettings),
-                           table.get_tables_or_empty(kUserObjectiveSettings),
-                           table.get_tables_or_empty(kUserConstraintSettings),
-                           table.get_tables_or_empty(kUserMetricSettings)};
+  const DescriptionTables tables = get_description_tables(table);
   UserDescription& description = plan.description;
-  for (const ConfigTable& one : tables.variables) {
-    description.variables.push_back(read_variable_table(one));
-  }
-  for (const ConfigTable& one : tables.objectives) {
-    description.objectives.push_back({.quantity = {read_plain_name(one), one.get(kTableUnit)},
-                                      .is_maximised = one.get_choice(kDirection) == 1,
-                                      .weight = one.get(kObjectiveWeight),
-                                      .penalty = one.find(kObjectivePenalty),
-                                      .bound = one.find(kObjectiveBound)});
-    plan.readings.push_back(read_reading(one));
-  }
-  for (const ConfigTable& one : tables.constraints) {
-    description.constraints.push_back(
-        {{read_plain_name(one), one.get(kTableUnit)}, one.find(kUserLimit)});
-    plan.readings.push_back(read_reading(one));
-  }
-  for (const ConfigTable& one : tables.metrics) {
-    description.metrics.push_back({read_plain_name(one), one.get(kTableUnit)});
-    plan.readings.push_back(read_reading(one));
+  read_description(tables, description);
+  for (const auto* results : {&tables.objectives, &tables.constraints, &tables.metrics}) {
+    for (const ConfigTable& one : *results) {
+      plan.readings.push_back(read_reading(one));
+    }
   }
   const ConfigTable cases = table.get_table_or_empty(kUserCasesSettings);
   description.training_cases = cases.get(kCasesTraining);
@@ -427,6 +438,33 @@ void load_command(const ConfigTable& table, const std::filesystem::path& path,
     program.start = nullptr;
     program.why_not = kStartsNothing;
   }
+  loaded.problem = make_user_problem(std::move(program));
+}
+
+void load_external(const ConfigTable& table, LoadedProblem& loaded) {
+  const DescriptionTables tables = get_description_tables(table);
+  UserProgram program{
+      .name = loaded.name,
+      .why_not =
+          "its file has kind = \"external\", so armwright cannot compute it. 'armwright ask "
+          "RUN --problem FILE' hands out its points, and 'armwright tell RUN RESULTS' takes "
+          "the results"};
+  program.description.name = loaded.name;
+  read_description(tables, program.description);
+  check_description(program.description, [&](const std::string& field, const std::string& fault) {
+    tables.refuse(field, fault);
+  });
+  for (const auto* named :
+       {&tables.variables, &tables.objectives, &tables.constraints, &tables.metrics}) {
+    for (const ConfigTable& one : *named) {
+      if (const std::string name = one.get(kTableName); name == "id" || name == "missing") {
+        one.refuse(kTableName,
+                   "the tables of armwright ask and tell have a column with this name; choose "
+                   "another name");
+      }
+    }
+  }
+  set_user_cases(program.description, loaded);
   loaded.problem = make_user_problem(std::move(program));
 }
 

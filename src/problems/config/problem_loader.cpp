@@ -22,10 +22,10 @@ const Setting<std::string> kTitle{"title", kNoDefault,
                                   "one line, for lists and reports (default: the name)"};
 const Setting<std::string> kDescription{"description", "", "some lines more"};
 const Setting<std::string> kProblemKind{
-    "kind", one_of({"tracking", "analytic", "program", "command"}), kNoDefault,
+    "kind", one_of({"tracking", "analytic", "program", "command", "external"}), kNoDefault,
     "tracking: a robot follows a moving target; analytic: a function with a known optimum; "
     "program: a problem of your own that a program computes; command: one that a command line "
-    "computes, case by case"};
+    "computes, case by case; external: one whose results you hand over (armwright ask)"};
 const Setting<std::string> kProblemName{
     "name", kNoDefault,
     "name of the problem and of its runs' folders (default: the file's name); {robot} in it stands "
@@ -316,6 +316,10 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
     loaded.name = read_name(table, path, loaded);
     load_command(table, path, programs, loaded);
     usual = loaded.sets;
+  } else if (kind == "external") {
+    loaded.name = read_name(table, path, loaded);
+    load_external(table, loaded);
+    usual = loaded.sets;
   }
   loaded.name = read_name(table, path, loaded);
   loaded.title = table.get_or(kTitle, loaded.title.empty() ? loaded.name : loaded.title);
@@ -328,8 +332,11 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
   loaded.published = read_published_winner(table.get_table_or_empty(kWinnerSettings));
   if (kind == "analytic") {
     load_analytic(table, loaded);
-  } else if (kind == "program" || kind == "command") {
+  } else if (kind == "program" || kind == "command" || kind == "external") {
     settle_program(table, loaded);
+    if (kind != "program") {  // a record is read without the file that gives the name
+      table.settle(kProblemName, loaded.name);
+    }
   } else {
     load_tracking(table, engines, loaded);
     if (table.get_or(kProblemName, "").find(kRobotInName) != std::string::npos) {

@@ -72,6 +72,9 @@ extern const SettingTable kCommandSettings, kUserVariableSettings, kUserObjectiv
 // texts of templates, so that a recorded problem is read without them.
 void load_command(const ConfigTable& table, const std::filesystem::path& path,
                   const ProgramSource& programs, LoadedProblem& loaded);
+// Sets a problem that has only a description, for ask and tell. armwright cannot simulate it.
+// loaded.name must be set.
+void load_external(const ConfigTable& table, LoadedProblem& loaded);
 
 // schedule_reader.cpp: [schedule] and [racing]
 

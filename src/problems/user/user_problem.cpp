@@ -24,9 +24,7 @@ namespace {
 // functions, a model that is fitted through it keeps its digits.
 constexpr double kUserPenalty = 1e12;
 
-// A question has at least as many jobs as are answered in the first time, because a message takes
-// time too, and at most as many as are answered in the second one, so that all threads end together.
-constexpr double kShortQuestion_s = 0.002;
+// A question has at most as many jobs as are answered in this time, so that all threads end together.
 constexpr double kLongQuestion_s = 0.1;
 constexpr double kMostJobs = 1000;  // of a question
 
@@ -49,12 +47,10 @@ class UserProblem final : public Problem {
   const ProblemDescription& description() const override { return description_; }
 
   BatchSize batch_size(CaseRole /*role*/) const override {
-    const auto count = [cost_s = case_s_.load()](double question_s) {
-      return static_cast<std::size_t>(std::clamp(question_s / cost_s, 1.0, kMostJobs));
-    };
-    const std::size_t granularity = count(kShortQuestion_s);
-    return {.granularity = granularity,
-            .largest = count(kLongQuestion_s) / granularity * granularity};
+    // The granularity numbers the pairs of a batch, so it must be the same in every process.
+    return {.granularity = 1,
+            .largest = static_cast<std::size_t>(
+                std::clamp(kLongQuestion_s / case_s_.load(), 1.0, kMostJobs))};
   }
 
   std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override {
@@ -76,6 +72,12 @@ class UserProblem final : public Problem {
                                          std::size_t cases) const override;
 
   const UserDescription& user_description() const { return program_.description; }
+  void require_start() const {
+    if (!program_.start) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("problem '{}': {}", sanitize(program_.name), program_.why_not));
+    }
+  }
   Evaluation evaluate_answer(const CaseJob& job, CaseAnswer answer) const {
     const std::vector<CaseOutcome> outcomes = {make_outcome(job, std::move(answer))};
     return aggregate(job.x, outcomes);
@@ -114,10 +116,7 @@ class UserProblem final : public Problem {
   }
 
   std::unique_ptr<CaseServer> take_server(bool is_new = false) const {
-    if (!program_.start) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("problem '{}': {}", sanitize(program_.name), program_.why_not));
-    }
+    require_start();
     return pool_.take(is_new);
   }
 
@@ -372,6 +371,12 @@ std::shared_ptr<const Problem> make_user_problem(UserProgram program) {
 const UserDescription* find_user_description(const Problem& problem) {
   const auto* user = dynamic_cast<const UserProblem*>(&problem);
   return user == nullptr ? nullptr : &user->user_description();
+}
+
+void require_server(const Problem& problem) {
+  if (const auto* user = dynamic_cast<const UserProblem*>(&problem)) {
+    user->require_start();
+  }
 }
 
 Evaluation make_evaluation(const Problem& problem, const CaseJob& job, CaseAnswer answer) {

@@ -20,6 +20,8 @@ bool is_fault_of_program(const CaseOutcome& outcome);
 // Returns the description that the user gave of a problem that make_user_problem() made; null for
 // other problems. Valid as long as the problem.
 const UserDescription* find_user_description(const Problem& problem);
+// Throws Error{usage}, which says what to do, if a problem of make_user_problem() has no server.
+void require_server(const Problem& problem);
 
 // Returns the evaluation of a decision vector on the only case of `job.block`, where somebody else
 // has simulated it and hands over the answer. The problem must be one of make_user_problem(). Throws

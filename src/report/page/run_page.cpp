@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/text.hpp"
+#include "problems/user/user_problem.hpp"
 #include "report/evidence/arm_evidence.hpp"
 #include "report/evidence/distance_response.hpp"
 #include "report/evidence/page_json.hpp"
@@ -154,7 +155,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
   const ProblemDescription description = run.describe();
   const History history = divide_history(run.journal.training);
   // A page never starts a program of the user.
-  const bool can_simulate = run.problem && run.problem->program.empty();
+  const bool can_simulate = run.problem && find_user_description(*run.problem->problem) == nullptr;
   PageSimulator* used = options.simulate && can_simulate ? &simulator : nullptr;
   const auto incumbents =
       thin_out(find_incumbents(description, run.journal.training, run.schedule.changes_cases()),

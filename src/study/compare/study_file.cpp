@@ -13,6 +13,7 @@
 #include "optimizers/plugins/recorded_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/config_files.hpp"
+#include "problems/user/user_problem.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
 #include "study/compare/optimizer_labels.hpp"
@@ -184,6 +185,9 @@ void load_problems(const RawPlan& raw, bool reads_programs, StudyPlan& plan) {
       problem.settings.insert(problem.settings.end(), settings->begin(), settings->end());
     }
     problem.loaded = load_named_problem(named, problem.settings, plan.programs);
+    if (problem.loaded.program.empty()) {  // kind = "external"
+      require_server(*problem.loaded.problem);
+    }
     record_description(problem);
     if (reads_programs && !problem.loaded.program.empty()) {
       problem.loaded.input_hashes = read_inputs(named.inputs);

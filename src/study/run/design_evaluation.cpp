@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "problems/user/user_problem.hpp"
 #include "study/executor/thread_pool.hpp"
 
 namespace armwright {
@@ -48,12 +49,12 @@ double get_number(const TrackingResult& result) {
 }  // namespace
 
 const TrackingProblem& require_tracking(const LoadedProblem& problem) {
-  if (problem.tracking() == nullptr && !problem.program.empty()) {
+  if (find_user_description(*problem.problem) != nullptr) {
     throw Error(ErrorKind::usage,
                 fmt::format("problem '{}' is one of your own and has no arm. 'armwright evaluate "
-                            "winner.toml --problem {}' evaluates its designs, and 'armwright "
+                            "winner.toml --problem PROBLEM' evaluates its designs, and 'armwright "
                             "report' shows its runs",
-                            problem.name, problem.program));
+                            problem.name));
   }
   if (problem.tracking() == nullptr) {
     throw Error(

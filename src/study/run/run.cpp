@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/folder_checksums.hpp"
 #include "base/text.hpp"
+#include "problems/user/user_problem.hpp"
 #include "process/output_log.hpp"
 #include "study/journal/journal_format.hpp"
 #include "study/run/run_evaluator.hpp"
@@ -129,6 +130,9 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   const RunClock clock;
   RunPlan plan = request.plan;
   check_plan(plan);
+  if (!request.ask && plan.problem.program.empty()) {
+    require_server(*plan.problem.problem);  // before a folder is made
+  }
   if (request.derived == DerivedFiles::all) {
     check_path(request.folder);
   }

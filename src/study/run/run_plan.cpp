@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "optimizers/table/optimizer_table.hpp"
+#include "problems/user/user_problem.hpp"
 
 namespace armwright {
 namespace {
@@ -100,7 +101,8 @@ void check_plan(const RunPlan& plan) {
                             plan.schedule.cases, kFewestBredCases));
   }
   const ProblemDescription& problem = plan.problem.problem->description();
-  if (plan.schedule.kind == Schedule::Kind::coevolution && !plan.problem.program.empty()) {
+  if (plan.schedule.kind == Schedule::Kind::coevolution &&
+      find_user_description(*plan.problem.problem) != nullptr) {
     throw Error(ErrorKind::usage,
                 fmt::format("schedule coevolution breeds the paths of a robot's tool, and {} has "
                             "cases of its own; use fixed:K or fresh:K",
