@@ -127,7 +127,7 @@ TEST_F(CliAskTell, RefusedResultsNameTheLineAndRecordNothing) {
   EXPECT_THAT(refuse(R"({"id": 90, "objectives": [1]})"),
               HasSubstr("results.txt:3: point 90 was never handed out"));
   EXPECT_THAT(refuse(R"({"id": 1, "objectives": [1]})"),
-              HasSubstr("results.txt:3: point 1 has another result at results.txt:2"));
+              HasSubstr("results.txt:3: point 1 has another result at results.txt:1"));
   EXPECT_THAT(refuse(R"({"id": 0, "objectives": [1, 2]})"), HasSubstr("results.txt:3: "));
   EXPECT_THAT(refuse(R"({"id": 0, "objectives": [NaN]})"), HasSubstr("results.txt:3: "));
   EXPECT_THAT(refuse(R"({"id": 0, "objectives": ["high"]})"), HasSubstr("results.txt:3: "));
