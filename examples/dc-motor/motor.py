@@ -30,7 +30,8 @@ def simulate(kp_position, kp_speed, ki_speed):
     def calc_torque(motor, speed, integral):
         slip = kp_position * (1 - motor) - speed
         wanted = kp_speed * slip + ki_speed * integral
-        return numpy.clip(wanted, -LIMIT_N_M, LIMIT_N_M), slip * (numpy.abs(wanted) < LIMIT_N_M)
+        torque = numpy.clip(wanted, -LIMIT_N_M, LIMIT_N_M)
+        return torque, slip + (torque - wanted) / kp_speed  # at the limit, the integral follows the torque
 
     def derive(t, state):
         motor, speed, load, load_speed, integral, _ = state
@@ -39,7 +40,7 @@ def simulate(kp_position, kp_speed, ki_speed):
         return [speed, (torque - shaft) / MOTOR_KG_M2, load_speed, shaft / LOAD_KG_M2, growth,
                 t * abs(1 - load)]
 
-    found = solve_ivp(derive, (0, END_S), numpy.zeros(6), method="RK45", rtol=1e-6, atol=1e-9, max_step=0.005)
+    found = solve_ivp(derive, (0, END_S), numpy.zeros(6), method="LSODA", rtol=1e-6, atol=1e-9, max_step=0.005)
     if not found.success:
         return {"status": "diverged", "reason": found.message}
     motor, speed, load, _, integral, itae = found.y

@@ -132,32 +132,55 @@ TEST_P(MpiRuns, WriteTheSameOnAnyNumberOfRanksAndThreads) {
   }
 }
 
-// Every rank starts the program of the problem for itself.
-TEST_F(Mpi, AComparisonOnAUsersProblemHasTheSameBytesForAnyThreadsAndRanks) {
-  const std::string problem =
-      "exec:python3 " ARMWRIGHT_TEST_PLUGINS_SOURCE "/problem.py slow-squares";
+struct UserProblem {
+  const char* name;
+  const char* problem;
+  const char* optimizers;  // eight
+  const char* requirement =
+      "true";  // a command of the shell that succeeds where the problem can run
+};
+
+std::ostream& operator<<(std::ostream& out, const UserProblem& problem) {
+  return out << problem.name;
+}
+
+constexpr const char* kEight =
+    "ga,cmaes,lhs,nlopt:cobyla,nlopt:sbplx,nlopt:isres,pagmo:de,pagmo:pso";
+
+class MpiUserProblem : public Mpi, public testing::WithParamInterface<UserProblem> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Problems, MpiUserProblem,
+    testing::Values(
+        UserProblem{"Residuals",
+                    "exec:python3 " ARMWRIGHT_TEST_PLUGINS_SOURCE "/problem.py slow-squares",
+                    "ga,cmaes,lhs,nlopt:cobyla,nlopt:bobyqa,pagmo:de,pagmo:pso,ceres:lm"},
+        UserProblem{"Motor",
+                    "exec:/usr/bin/python3 " ARMWRIGHT_CONFIGS "/../examples/dc-motor/motor.py",
+                    kEight, "/usr/bin/python3 -c 'import scipy'"},
+        UserProblem{"Filter", ARMWRIGHT_CONFIGS "/../examples/filter/filter.toml", kEight,
+                    "command -v ngspice"}),
+    [](const auto& problem) { return problem.param.name; });
+
+// Every rank starts the processes of the problem for itself.
+TEST_P(MpiUserProblem, ComparesEightOptimizersWithTheSameBytesForAnyThreadsAndRanks) {
+  const UserProblem& user = GetParam();
+  if (std::system((std::string(user.requirement) + " >/dev/null 2>&1").c_str()) != 0) {
+    GTEST_SKIP() << "the problem cannot run here, because this fails: " << user.requirement
+                 << " (scripts/setup installs scipy, ngspice and MuJoCo)";
+  }
   const auto make_command = [&](const std::string& out, const char* jobs) {
     return std::vector<std::string>{
-        "compare",
-        "--problems",
-        problem,
-        "--optimizers",
-        "ga,cmaes,lhs,nlopt:cobyla,nlopt:bobyqa,pagmo:de,pagmo:pso,ceres:lm",
-        "--replicates",
-        "2",
-        "--budget",
-        "60",
-        "--jobs",
-        jobs,
-        "--out",
-        out,
-        "--quiet"};
+        "compare",      "--problems", user.problem, "--optimizers", user.optimizers,
+        "--replicates", "2",          "--budget",   "20",           "--jobs",
+        jobs,           "--out",      out,          "--quiet"};
   };
   const Outcome one = run_program(folder_.path(), make_command("one", "1"));
   ASSERT_EQ(one.exit_code, 0) << one.err;
   EXPECT_THAT(one.out, HasSubstr("Verdict"));
   const auto expected = read_study(folder_ / "one");
-  ASSERT_EQ(run_program(folder_.path(), make_command("two", "2")).exit_code, 0);
+  const Outcome two = run_program(folder_.path(), make_command("two", "2"));
+  ASSERT_EQ(two.exit_code, 0) << two.err;
   EXPECT_EQ(read_study(folder_ / "two"), expected);
   const Outcome ranks = run_program(folder_.path(), make_command("three", "1"), make_ranks(3));
   EXPECT_EQ(ranks.exit_code, 0) << ranks.err;

@@ -1,5 +1,7 @@
 // Tests runs on problems of users under SIGKILL: a resumed run ends with the same bytes, and the
-// programs of the problem end with the run.
+// processes of the problem end with the run.
+#include <tuple>
+
 #include "base/random.hpp"
 #include "faults/support.hpp"
 
@@ -8,46 +10,70 @@ namespace {
 
 using Fault = FailingFiles::Fault;
 
-class KilledProblem : public testing::TestWithParam<const char*> {};
+// The way by which the problem reaches armwright, and the optimizer.
+class KilledProblem : public testing::TestWithParam<std::tuple<const char*, const char*>> {
+ protected:
+  std::string way() const { return std::get<0>(GetParam()); }
+  std::string optimizer() const { return std::get<1>(GetParam()); }
 
-Words make_squares(const std::string& optimizer, const std::string& out, int jobs) {
-  return {"optimize",    "exec:python3 " + get_script("problem.py") + " slow-squares",
-          "--optimizer", optimizer,
-          "--budget",    "600",
-          "--out",       out,
-          "--jobs",      std::to_string(jobs),
-          "--quiet"};
-}
+  void SetUp() override {
+#ifndef ARMWRIGHT_PYTHON
+    if (way() == "python") {
+      GTEST_SKIP() << "armwright was built without the Python package";
+    }
+#endif
+  }
+
+  Outcome run(const std::string& out, int jobs, Environment environment = {}) const {
+    Words words = {"optimize"};
+    if (way() == "program") {
+      words.push_back("exec:python3 " + get_script("problem.py") + " slow-squares");
+    } else if (way() == "library") {
+      words.push_back(ARMWRIGHT_TEST_LIBRARIES "/libsquares.so");
+    }
+#ifdef ARMWRIGHT_PYTHON
+    if (way() == "python") {  // a script that takes the same words runs in place of the program
+      environment.launcher = {ARMWRIGHT_PYTHON, get_script("squares.py")};
+      environment.variables.emplace_back("PYTHONPATH", ARMWRIGHT_PYTHON_PACKAGE);
+    }
+#endif
+    words = words + Words{"--optimizer", optimizer(), "--budget",           "600",    "--out",
+                          out,           "--jobs",    std::to_string(jobs), "--quiet"};
+    return run_program(folder_.path(), words, environment);
+  }
+
+  const TemporaryFolder folder_;
+};
 
 TEST_P(KilledProblem, EndsWithTheSameBytesAfterTenKills) {
-  const TemporaryFolder folder;
-  std::filesystem::create_directory(folder / "runs");
-  const Outcome whole = run_program(folder.path(), make_squares(GetParam(), "whole", 2));
+  std::filesystem::create_directory(folder_ / "runs");
+  const Outcome whole = run("whole", 2);
   ASSERT_EQ(whole.exit_code, 0) << whole.err;
-  FailingFiles files(folder / "runs", "write");
-  RandomStream random(std::string("test/killed-problem/") + GetParam(), 1);
+  FailingFiles files(folder_ / "runs", "write");
+  RandomStream random("test/killed-problem/" + optimizer(), 1);
   int kills = 0;
   for (int life = 0; life < 10; ++life) {
     const auto at = static_cast<std::uint64_t>(random.uniform(2, 9));
     Environment environment = files.make_environment(Fault::kill, at, 0);
     environment.variables.emplace_back("FAULTS_MARK", "problem");
-    const Outcome killed = run_program(
-        folder.path(), make_squares(GetParam(), "runs/killed", 1 + life % 2), environment);
+    const Outcome killed = run("runs/killed", 1 + life % 2, environment);
     kills += killed.exit_code == -SIGKILL ? 1 : 0;
     ASSERT_TRUE(wait_until([] { return list_processes("problem").empty(); }))
-        << "programs outlive the run";
+        << "processes of the problem outlive the run";
   }
   EXPECT_EQ(kills, 10);
-  const Outcome last = run_program(folder.path(), make_squares(GetParam(), "runs/killed", 2));
+  const Outcome last = run("runs/killed", 2);
   ASSERT_EQ(last.exit_code, 0) << last.err;
-  expect_same_run(folder / "whole", folder / "runs/killed");
+  expect_same_run(folder_ / "whole", folder_ / "runs/killed");
 }
 
-INSTANTIATE_TEST_SUITE_P(Optimizers, KilledProblem,
-                         testing::Values("ga", "cmaes", "pagmo:de", "nlopt:cobyla", "ceres:lm",
-                                         "random"),
+INSTANTIATE_TEST_SUITE_P(Ways, KilledProblem,
+                         testing::Combine(testing::Values("program", "library", "python"),
+                                          testing::Values("ga", "cmaes", "pagmo:de", "nlopt:cobyla",
+                                                          "ceres:lm", "random")),
                          [](const auto& test) {
-                           std::string name = test.param;
+                           std::string name =
+                               std::string(std::get<0>(test.param)) + "_" + std::get<1>(test.param);
                            std::erase(name, ':');
                            return name;
                          });
