@@ -158,6 +158,8 @@ INSTANTIATE_TEST_SUITE_P(
         UserProblem{"Motor",
                     "exec:/usr/bin/python3 " ARMWRIGHT_CONFIGS "/../examples/dc-motor/motor.py",
                     kEight, "/usr/bin/python3 -c 'import scipy'"},
+        UserProblem{"CartPole", ARMWRIGHT_TEST_LIBRARIES "/libcart_pole.so", kEight,
+                    "test -e " ARMWRIGHT_TEST_LIBRARIES "/libcart_pole.so"},
         UserProblem{"Filter", ARMWRIGHT_CONFIGS "/../examples/filter/filter.toml", kEight,
                     "command -v ngspice"}),
     [](const auto& problem) { return problem.param.name; });

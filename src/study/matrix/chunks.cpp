@@ -22,9 +22,8 @@ double measure_case_s(const StudyPlan& plan, const StudyProblem& problem, CaseRo
   }
   CaseBlock block{role, set, std::vector<std::uint64_t>(cases)};
   std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
-  if (!is_program) {
-    problem.loaded.problem->evaluate(x, block);  // not timed: generates the cases, which are kept
-  }
+  // Not timed: generates the cases, which are kept, or starts the program.
+  problem.loaded.problem->evaluate(x, block);
   const auto start = std::chrono::steady_clock::now();
   problem.loaded.problem->evaluate(x, block);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
