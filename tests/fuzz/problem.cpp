@@ -57,7 +57,9 @@ void fuzz_problem(std::string_view input) {
   write_scratch(file, overrides.front());
   overrides.erase(overrides.begin());
   is_read([&] {
-    const LoadedProblem loaded = load_problem(file.string(), overrides);
+    // No program starts: neither one that the input names nor a library.
+    const LoadedProblem loaded = load_problem(file.string(), overrides, engine_table(),
+                                              {.may_describe = false, .may_simulate = false});
     check_description(loaded.problem->description());
     const LoadedProblem again = [&] {
       try {

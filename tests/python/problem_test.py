@@ -193,7 +193,7 @@ class ProblemTest(FolderTest):
             self.problem.evaluate_design("start", cases=np.zeros((1, 3, 3)))
         with self.expect_error(armwright.UsageError, "is an analytic function"):
             armwright.load_problem("sphere").evaluate_design("start")
-        with self.expect_error(armwright.UsageError, "has no test cases"):
+        with self.expect_error(armwright.UsageError, "has no arm, so its test cases have no points"):
             armwright.load_problem("sphere").cases()
 
     def test_arms_of_the_users_own(self):

@@ -150,7 +150,9 @@ int run_compare(const CompareOptions& options, Session& session) {
     job.serve(
         [&] {
           // Only rank 0 runs plugins, once the user has agreed.
-          plan = make_study_plan(make_request(options, PluginUse::read));
+          StudyRequest request = make_request(options, PluginUse::read);
+          request.is_rank = true;
+          plan = make_study_plan(request);
           adopt_recorded(options.folder.choose(escape_name(plan.name)), plan);
           return list_problems(plan);
         },

@@ -86,7 +86,7 @@ UserProgram make_program(const std::string& command, const ServerLimits& limits,
   } else if (!programs.may_describe) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("problem '{}': its description is not recorded (program.description), "
-                            "and a record starts no program",
+                            "and this command starts no program",
                             sanitize(command)));
   } else {
     program.description = is_exec ? describe_program(words) : describe_library(command, limits);

@@ -420,6 +420,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   RawPlan raw;
   bool reads_plugins = request.plugins == PluginUse::read;
   plan.programs.hosts = request.hosts;
+  plan.programs.may_describe = request.plugins != PluginUse::read || request.is_rank;
   std::filesystem::path record;          // the folder of the file
   std::vector<NamedOptimizer> recorded;  // the optimizers that the user did not name
   if (!request.file.empty()) {
@@ -429,7 +430,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
     // Plugins that the user names in `optimizers` need no consent. A file of the user's own is run
     // as a script is.
     const bool is_of_record = raw.is_recorded || path.filename() == "study.toml";
-    plan.programs.may_describe = !(is_of_record && request.problems.empty());
+    plan.programs.may_describe &= !(is_of_record && request.problems.empty());
     plan.programs.may_simulate =
         plan.programs.may_describe || request.plugins != PluginUse::preview;
     if (is_of_record && request.optimizers.empty()) {

@@ -142,6 +142,9 @@ struct StudyRequest {
   std::vector<OptimizerRow> rows = {};
   std::vector<UserProgram> hosts = {};  // problems that it computes itself, likewise
   PluginUse plugins = PluginUse::run;
+  // A rank of mpirun beside rank 0: with PluginUse::read, the programs of problems may describe
+  // themselves, because this rank simulates.
+  bool is_rank = false;
   AskUser ask = {};  // whether plugins and programs of a recorded plan may run
 };
 

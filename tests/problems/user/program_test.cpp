@@ -179,7 +179,8 @@ TEST(ProgramProblem, ACaseThatTakesTooLongOrTooMuchMemoryIsAnEvaluationToo) {
             "the program has been silent for 2 s (program.time_limit_s)");
   EXPECT_THAT(failure_of("closed", failed, quick), HasSubstr("closed its standard output"));
   const LoadedProblem greedy = load("memory", {"program.memory_mib=100"});
-  EXPECT_THAT(evaluate(greedy, kBad).reason, HasSubstr("100 MiB are allowed"));
+  EXPECT_THAT(evaluate(greedy, kBad).reason,
+              HasSubstr("took more than 100 MiB of memory (program.memory_mib)"));
   EXPECT_EQ(evaluate(greedy, kGood).objectives, std::vector<double>{14});
   EXPECT_EQ(evaluate(load("deaf", {"program.time_limit_s=1"}), kGood).status, timed_out);
 }
