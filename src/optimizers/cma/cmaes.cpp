@@ -140,8 +140,7 @@ std::vector<OptionSpec> make_option_specs() {
 std::vector<OptimizerRow> make_cmaes_rows() {
   return {{
       .name = "cmaes",
-      .summary = "CMA-ES: adapts a normal distribution; active update, restarts, margin for "
-                 "integers",
+      .summary = "CMA-ES: adapts a normal distribution; active update, restarts, margin",
       .source =
           "Hansen 2016, The CMA Evolution Strategy: A Tutorial (arXiv:1604.00772); Auger and "
           "Hansen 2005, A restart CMA evolution strategy with increasing population size; "

@@ -18,6 +18,7 @@
 #include "optimizers/plugins/plugin_process.hpp"
 #include "optimizers/plugins/recorded_optimizer.hpp"
 #include "optimizers/table/multistart.hpp"
+#include "process/command_words.hpp"
 
 namespace armwright {
 namespace {

@@ -32,10 +32,6 @@ OptimizerRow load_process_plugin(std::string_view /*command*/, double /*loading_
   throw Error(ErrorKind::usage, "fuzzers start no programs");
 }
 
-std::vector<std::string> list_program_files(std::string_view /*command*/) {
-  return {};
-}
-
 OptimizerRow load_library_plugin(const std::filesystem::path& /*file*/, const std::string& /*name*/,
                                  const ProcessLimits& /*loading*/) {
   throw Error(ErrorKind::usage, "fuzzers open no libraries");
