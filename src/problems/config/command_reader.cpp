@@ -168,12 +168,12 @@ DecisionVariable read_variable_table(const ConfigTable& table) {
     variable.choices = table.get(kVariableChoices);
     variable.upper = static_cast<double>(variable.choices.size()) - 1;
     if (table.has(kStartWord)) {
-      const auto found = std::ranges::find(variable.choices, table.get(kStartWord));
-      if (found == variable.choices.end()) {
+      const auto start = find_word(variable, table.get(kStartWord));
+      if (!start) {
         table.refuse(kStartWord, fmt::format("it must be one of its choices: {}",
                                              join(variable.choices, ", ")));
       }
-      variable.start = static_cast<double>(found - variable.choices.begin());
+      variable.start = *start;
     }
     return variable;
   }

@@ -56,7 +56,7 @@ struct LoadedProblem {
   // Returns the tracking problem; null for an analytic function. Valid as long as `problem`.
   const TrackingProblem* tracking() const { return problem->tracking(); }
   std::optional<FunctionChoice> function;  // of an analytic function
-  // Of a problem that a user has written, the program as the user typed it: "exec:python3 motor.py".
+  // The program of a user's problem, as the user typed it: "exec:python3 motor.py"; else empty.
   std::string program;
   bool is_deterministic = true;  // false: the same case of the same design can have other results
   Schedule schedule;

@@ -35,8 +35,7 @@ const Setting<double> kProgramMemory{"memory_mib",
                                      {.lower = 1, .upper = 1e7},
                                      ServerLimits{}.memory_mib,
                                      "for the kind program: how much the memory of one of its "
-                                     "processes may grow; beyond it the case "
-                                     "is a failed case"};
+                                     "processes may grow; beyond it the case is a failed case"};
 const Setting<std::string> kProgramDescription{
     "description", "",
     "for the kind program: its description of itself as JSON, which armwright records; with it, "
@@ -46,8 +45,7 @@ const Setting<std::string> kProgramDescription{
 std::string explain_host_problem(std::string_view command) {
   if (command.starts_with(kPython)) {
     return "it belongs to a program in Python; run it from there (docs/python.md). show, report "
-           "and "
-           "export work without it";
+           "and export work without it";
   }
   return command.starts_with(kHost)
              ? "it is computed by the program that uses armwright as a library and began the run, "

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "base/toml_text.hpp"
+#include "problems/user/user_description.hpp"
 
 namespace armwright {
 namespace {
@@ -56,11 +57,11 @@ FileValue read_value_table(const ConfigTable& table, bool allows_word) {
 double find_value(const FileValue& one, const DecisionVariable& variable,
                   const std::function<void(const std::string&)>& refuse) {
   if (variable.type == VariableType::category) {
-    const auto found = std::ranges::find(variable.choices, one.word);
-    if (found == variable.choices.end()) {
+    const auto value = find_word(variable, one.word);
+    if (!value) {
       refuse(fmt::format("needs a word, which must be one of: {}", join(variable.choices, ", ")));
     }
-    return static_cast<double>(found - variable.choices.begin());
+    return *value;
   }
   const bool is_inside = one.value >= variable.lower && one.value <= variable.upper;
   if (!one.word.empty() || !is_inside || settle_value(variable, one.value) != one.value) {

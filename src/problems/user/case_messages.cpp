@@ -168,7 +168,7 @@ std::string make_question(const UserDescription& description, const char* type, 
   for (const CaseJob& job : jobs) {
     fmt::format_to(std::back_inserter(text), "{}{}", &job == jobs.data() ? "" : ",", job.number);
   }
-  if (!make_description(description).has_single_case) {
+  if (!has_single_case(description)) {
     text += "],\"seeds\":[";
     for (const CaseJob& job : jobs) {
       fmt::format_to(std::back_inserter(text), "{}{}", &job == jobs.data() ? "" : ",",

@@ -27,8 +27,8 @@ struct ResultReading {
   // expression.
   std::string what;
   ColumnRow row = ColumnRow::last;  // of a column
-  // Of a regular expression: it has one group or more, and the first is the number. It is searched
-  // in each line; the last line that has it counts.
+  // The regular expression has one group or more, and the first is the number. Each line is
+  // searched for it; the last line that has it counts.
   std::regex pattern;
 };
 

@@ -135,11 +135,11 @@ DecisionVariable read_variable(const FieldReader& fields) {
     variable.choices = read_words(fields);
     variable.upper = static_cast<double>(variable.choices.size()) - 1;
     if (fields.has("start")) {
-      const auto found = std::ranges::find(variable.choices, fields.text("start", ""));
-      if (found == variable.choices.end()) {
+      const auto start = find_word(variable, fields.text("start", ""));
+      if (!start) {
         fields.refuse("start", "one of its choices");
       }
-      variable.start = static_cast<double>(found - variable.choices.begin());
+      variable.start = *start;
     }
     return variable;
   }
@@ -409,6 +409,18 @@ void check_same_description(std::string_view name, const UserDescription& record
   }
 }
 
+bool has_single_case(const UserDescription& description) {
+  return description.training_cases == 1 && description.validation_cases == 1 &&
+         description.test_cases == 1 && description.is_deterministic;
+}
+
+std::optional<double> find_word(const DecisionVariable& variable, std::string_view word) {
+  const auto found = std::ranges::find(variable.choices, word);
+  return found == variable.choices.end()
+             ? std::nullopt
+             : std::optional(static_cast<double>(found - variable.choices.begin()));
+}
+
 double choose_start(const DecisionVariable& variable) {
   if (!(variable.lower < variable.upper)) {
     return variable.lower;  // check_description() refuses these bounds
@@ -449,8 +461,7 @@ ProblemDescription make_description(const UserDescription& description) {
     made.limits.clear();  // all constraints have one or none has
   }
   made.cost_unit = "simulated case";
-  made.has_single_case = description.training_cases == 1 && description.validation_cases == 1 &&
-                         description.test_cases == 1 && description.is_deterministic;
+  made.has_single_case = has_single_case(description);
   made.has_residuals = description.has_residuals;
   if (!description.has_residuals) {
     made.residuals_advice =

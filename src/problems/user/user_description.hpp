@@ -77,6 +77,13 @@ UserDescription read_recorded_description(const std::string& recorded, std::stri
 void check_same_description(std::string_view name, const UserDescription& recorded,
                             const UserDescription& now);
 
+// Returns whether all evaluations of a decision vector are the same: the problem has one case and
+// answers it the same way each time.
+bool has_single_case(const UserDescription& description);
+
+// Returns the value of a category's word. Returns nothing if the word is none of its choices.
+std::optional<double> find_word(const DecisionVariable& variable, std::string_view word);
+
 // Returns the middle of a variable's bounds, or the middle of their logarithms; of a type with whole
 // numbers, the nearest whole number.
 double choose_start(const DecisionVariable& variable);
