@@ -165,16 +165,6 @@ void record_description(StudyProblem& problem) {
   }
 }
 
-// Reads the hashes of files as a plan records them.
-std::map<std::string, std::string> read_inputs(std::span<const std::string> inputs) {
-  std::map<std::string, std::string> hashes;
-  for (const std::string& input : inputs) {
-    const std::size_t blank = std::min(input.rfind(' '), input.size());
-    hashes[input.substr(0, blank)] = input.substr(std::min(blank + 1, input.size()));
-  }
-  return hashes;
-}
-
 // With `reads_programs`, takes the files of programs as they are recorded, because they may be gone.
 void load_problems(const RawPlan& raw, bool reads_programs, StudyPlan& plan) {
   std::vector<std::string> labels;

@@ -324,6 +324,15 @@ RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan) {
   return raw;
 }
 
+std::map<std::string, std::string> read_inputs(std::span<const std::string> inputs) {
+  std::map<std::string, std::string> hashes;
+  for (const std::string& input : inputs) {
+    const std::size_t blank = std::min(input.rfind(' '), input.size());
+    hashes[input.substr(0, blank)] = input.substr(std::min(blank + 1, input.size()));
+  }
+  return hashes;
+}
+
 std::vector<NamedOptimizer> read_recorded_optimizers(const std::filesystem::path& file) {
   std::vector<NamedOptimizer> optimizers;
   const ConfigTable plan = ConfigTable::load(study_settings(), file);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -55,6 +56,9 @@ struct RawPlan {
 // Reads the file into the returned plan and, for all that needs no loading, into `plan`. Throws
 // Error{usage} that names file, line and key, Error{io} for a file that cannot be read.
 RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan);
+
+// Reads the entries of NamedProblem::inputs and NamedOptimizer::inputs: file -> SHA-256.
+std::map<std::string, std::string> read_inputs(std::span<const std::string> inputs);
 
 // Returns the optimizers of a resolved plan. Throws as read_study_file().
 std::vector<NamedOptimizer> read_recorded_optimizers(const std::filesystem::path& file);
