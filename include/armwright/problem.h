@@ -116,11 +116,11 @@ struct armwright_answer {
   void (*set_residuals)(struct armwright_answer* answer, const double* values, size_t count);
 };
 
-/* What a case leaves beside its numbers; reports show it for the winner. The functions copy. */
+/* The signals and files of one case. Reports show them for the winner. The functions copy. */
 struct armwright_record {
   size_t struct_size;
   void* context; /* of armwright */
-  /* What the signals are plotted against: "time", "s". Call it before add_series(). */
+  /* Sets the abscissa of all signals: "time", "s". Call it before add_series(). */
   void (*set_abscissa)(struct armwright_record* record, const char* name, const char* unit,
                        const double* values, size_t count);
   /* A signal with as many values as the abscissa. */
@@ -172,7 +172,7 @@ struct armwright_user_problem {
                 struct armwright_record* record, char* message, size_t message_size);
 };
 
-/* What every library of a problem defines:
+/* Every library of a problem defines this function:
  *
  *     ARMWRIGHT_PROBLEM_EXPORT const struct armwright_user_problem* armwright_user_problem(void) {
  *       return &mine;

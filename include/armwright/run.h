@@ -28,7 +28,7 @@ extern "C" {
 #define ARMWRIGHT_RUN_API __attribute__((visibility("default")))
 #endif
 
-/* What armwright_run() returns: 0, or the exit code that the command line has for such an error. */
+/* armwright_run() returns 0, or the exit code that the command line has for such an error. */
 enum {
   ARMWRIGHT_RUN_OK = 0,
   ARMWRIGHT_RUN_INTERNAL = 1, /* memory, or a bug of armwright */

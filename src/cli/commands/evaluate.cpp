@@ -212,7 +212,7 @@ std::optional<LoadedProblem> load_own_problem(const EvaluateOptions& options) {
       return problem;
     }
   } catch (const Error&) {
-    // What an arm's problem lacks may come from the design; load_design_and_problem() says more.
+    // The design may supply what an arm's problem lacks; load_design_and_problem() says more.
     if (!is_arm_design(options.design)) {
       throw;
     }
