@@ -21,6 +21,7 @@
 #include "base/text.hpp"
 #include "process/fork_support.hpp"
 #include "process/process_watch.hpp"
+#include "process/stop_scope.hpp"
 
 namespace armwright {
 namespace {
@@ -246,6 +247,7 @@ void LineProcess::send(const std::string& line, double silence_s) {
     if (has_ended(pid_)) {
       return;
     }
+    check_work_stop();
     silence.look();
     if (silence.get_s() > silence_s) {
       throw LineProcessSilence(fmt::format("has not read its input for {:g} s", silence_s));
@@ -268,6 +270,7 @@ std::optional<std::string> LineProcess::receive(double silence_s,
     if (auto line = take_line()) {
       return line;
     }
+    check_work_stop();
     check_memory();
     log_.take_available();
     if (is_given_up()) {
@@ -350,6 +353,7 @@ LineProcess::Ending LineProcess::complete(double limit_s, std::size_t most_bytes
     if (ended) {
       break;
     }
+    check_work_stop();
     check_memory();
     passed.look();
     if (passed.get_s() > limit_s) {

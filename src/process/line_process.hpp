@@ -54,7 +54,8 @@ class LineProcess {
   // limits private writable memory instead.)
   void limit_memory(double mib);
 
-  // Both throw LineProcessFailure. `silence_s` is the longest time to wait for the child.
+  // These functions, and complete(), throw LineProcessFailure, and WorkStopped as
+  // check_work_stop() does. `silence_s` is the longest time to wait for the child.
   void send(const std::string& line, double silence_s);
   // Returns the next line, or nothing as soon as `is_given_up` returns true; it is called ten times
   // per second.

@@ -123,6 +123,10 @@ def compute(x, n, word):
             return {"status": "tired"}
     if fault == "slow-squares":
         time.sleep(0.001)
+        gate = os.environ.get("TEST_GATE")
+        while gate and x > 1 and not os.path.exists(gate):  # like a case without end
+            open(gate + ".reached", "w").close()
+            time.sleep(0.01)
         residuals = [x - 1.5, 0.5 * n, 1.0 if word == "dear" else 0.25, math.sin(3 * x)]
         return {"objectives": [sum(r * r for r in residuals)], "residuals": residuals}
     if fault == "sum":

@@ -19,6 +19,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "problems/user/case_messages.hpp"
 #include "problems/user/native_problem.hpp"
@@ -26,6 +27,7 @@
 #include "process/json_message.hpp"
 #include "process/output_log.hpp"
 #include "process/packet.hpp"
+#include "process/stop_scope.hpp"
 
 namespace armwright {
 namespace {
@@ -238,6 +240,8 @@ class LibraryProcess {
 
  private:
   static bool is_late(WakingTime& silence, double limit_s) {
+    check_work_stop();
+    check_reading();
     silence.look();
     return silence.get_s() > limit_s;
   }

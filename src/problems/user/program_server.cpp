@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "problems/user/case_messages.hpp"
 #include "process/command_words.hpp"
@@ -32,7 +33,10 @@ UserDescription ask_description(LineProcess& child, const OutputLog& log, const 
   std::string fault;
   try {
     child.send(make_hello_line(), kLoading_s);
-    const auto line = child.receive(kLoading_s, [] { return false; });
+    const auto line = child.receive(kLoading_s, [] {
+      check_reading();  // Ctrl-C while a problem is loaded
+      return false;
+    });
     return read_user_description(read_message(line.value()));
   } catch (const ProtocolError& error) {
     fault = error.what();

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "problems/user/user_problem.hpp"
 #include "process/output_log.hpp"
+#include "process/stop_scope.hpp"
 #include "study/journal/journal_format.hpp"
 #include "study/run/run_evaluator.hpp"
 #include "study/run/run_folder.hpp"
@@ -214,8 +215,14 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     journal.append(EndRecord{result.end_reason, result.counts.evaluations});
   }
   journal.close();
-  write_derived_files(folder, plan, result, read_journal(folder.journal()), request.derived,
-                      add_time);
+  try {
+    const StopScope scope(&stop);
+    write_derived_files(folder, plan, result, read_journal(folder.journal()), request.derived,
+                        add_time);
+  } catch (const WorkStopped&) {  // while a user's problem recorded the winner
+    add_time();
+    return std::nullopt;
+  }
   return result;
 }
 
