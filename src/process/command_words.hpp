@@ -8,8 +8,9 @@
 namespace armwright {
 
 // Splits at blanks and handles both kinds of quotes and backslashes as a shell does. Expands
-// nothing. Throws Error{usage} if a quote is not closed or there is no word.
-std::vector<std::string> split_command(std::string_view command);
+// nothing. Throws Error{usage} if a quote is not closed or there is no word; its message says what
+// the command is: `kind` is "optimizer" or "problem".
+std::vector<std::string> split_command(std::string_view command, std::string_view kind);
 
 // Returns the words of a command that are files, which decide what the program does: the program
 // and its script. Starts nothing. Throws Error{usage} if the command cannot be split.

@@ -252,7 +252,7 @@ void check_option_names(const OptimizerRow& row) {
 }  // namespace
 
 OptimizerRow load_process_plugin(std::string_view command, double loading_s) {
-  const std::vector<std::string> words = split_command(command);
+  const std::vector<std::string> words = split_command(command, "optimizer");
   OutputLog log;
   try {
     LineProcess child(words, log);

@@ -280,7 +280,7 @@ std::vector<Template> read_command_words(const ConfigTable& table,
                                          LoadedProblem& loaded) {
   std::vector<std::string> words;
   try {
-    words = split_command(table.get(kCommandRun));
+    words = split_command(table.get(kCommandRun), "problem");
   } catch (const Error&) {
     table.refuse(kCommandRun, "it must begin with a program, and every quote must be closed");
   }

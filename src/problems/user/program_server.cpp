@@ -111,7 +111,7 @@ class ProgramServer final : public CaseServer {
 
 UserDescription describe_program(std::string_view command) {
   OutputLog log;
-  LineProcess child(split_command(command), log);
+  LineProcess child(split_command(command, "problem"), log);
   UserDescription description = ask_description(child, log, fmt::format("exec:{}", command));
   child.send(R"({"type":"quit"})", kProgramEnd_s);
   child.finish(kProgramEnd_s);
@@ -120,7 +120,7 @@ UserDescription describe_program(std::string_view command) {
 
 StartServer make_program_start(std::string_view command, const ServerLimits& limits,
                                const UserDescription& description) {
-  return [name = fmt::format("exec:{}", command), words = split_command(command), limits,
+  return [name = fmt::format("exec:{}", command), words = split_command(command, "problem"), limits,
           description]() -> std::unique_ptr<CaseServer> {
     return std::make_unique<ProgramServer>(name, words, limits, description);
   };

@@ -246,6 +246,8 @@ TEST(ProgramProblem, ABadDescriptionIsRefusedWithTheFieldAndTheValue) {
                     HasSubstr("no licence")));
   EXPECT_THAT(usage_error_of([] { load_problem("exec:no-such-program-here a"); }),
               HasSubstr("'no-such-program-here'"));
+  EXPECT_THAT(usage_error_of([] { load_problem("exec:python3 'a"); }),
+              HasSubstr("problem 'exec:python3 'a': a quote (') is not closed"));
 }
 
 TEST(ProgramProblem, ADescriptionThatChangesIsRefusedWithTheDifference) {
