@@ -39,12 +39,6 @@ Clock::time_point after(double seconds) {
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// Returns the process's resident memory in MiB, or 0 if the process has ended.
-double read_memory_mib(pid_t pid) {
-  const auto memory = measure_memory(std::to_string(pid));
-  return memory ? static_cast<double>(memory->resident_bytes) / 1048576 : 0;
-}
-
 void set_nonblocking(int fd) {
   fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) | O_NONBLOCK);
 }
@@ -169,7 +163,7 @@ LineProcess::~LineProcess() {
 
 void LineProcess::limit_memory(double mib) {
   memory_limit_mib_ = mib;
-  memory_mib_at_start_ = read_memory_mib(pid_);
+  memory_mib_at_start_ = measure_tree_mib(pid_, 0);
 }
 
 std::string LineProcess::kill() {
@@ -188,7 +182,8 @@ void LineProcess::check_memory() {
     return;
   }
   next_memory_check_ = now + kSlice;
-  const double grown_mib = read_memory_mib(pid_) - memory_mib_at_start_;
+  const double grown_mib =
+      measure_tree_mib(pid_, memory_mib_at_start_ + memory_limit_mib_) - memory_mib_at_start_;
   if (grown_mib > memory_limit_mib_) {
     throw LineProcessMemory(
         fmt::format("took {:.0f} MiB of memory beyond what it began with; {:.0f} MiB are allowed "

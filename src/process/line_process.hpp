@@ -50,8 +50,8 @@ class LineProcess {
   LineProcess(const LineProcess&) = delete;
   LineProcess& operator=(const LineProcess&) = delete;
 
-  // Limits the resident memory of the program to its present value plus `mib` MiB. (A ChildProcess
-  // limits private writable memory instead.)
+  // Limits the resident memory of the program and its descendants to its present value plus `mib`
+  // MiB. (A ChildProcess limits private writable memory of one process instead.)
   void limit_memory(double mib);
 
   // These functions, and complete(), throw LineProcessFailure, and WorkStopped as

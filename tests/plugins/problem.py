@@ -101,6 +101,9 @@ def compute(x, n, word):
             global hoard
             hoard = bytearray(400 << 20)
             time.sleep(600)
+        if fault == "child-memory":
+            subprocess.Popen([sys.executable, "-c", "b = bytearray(400 << 20); import time; time.sleep(600)"])
+            time.sleep(600)
         if fault == "closed":
             os.close(1)
             time.sleep(600)
