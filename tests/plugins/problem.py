@@ -85,6 +85,9 @@ def compute(x, n, word):
     if x > 4:
         if fault == "exit":
             sys.exit(3)
+        if fault == "last-words":
+            sys.stderr.write(f"process {os.getpid()}: no mesh\n")
+            sys.exit(3)
         if fault == "crash":
             os.kill(os.getpid(), signal.SIGSEGV)
         if fault == "late":
@@ -168,6 +171,8 @@ for line in sys.stdin:
             if fault == "too-many":
                 answers.append(1)
             if fault == "too-few":
+                answers.pop()
+            if fault == "too-few-together" and len(answers) > 1:
                 answers.pop()
             if fault == "other-question":
                 message["id"] += 1

@@ -232,10 +232,9 @@ class LibraryProcess {
       }
     } catch (const ChildFailure& failure) {
       const bool is_limit = *failure.limit() != '\0';
-      throw ServerFailure(
-          fmt::format("{}{}", failure.what(), is_limit ? " (program.memory_mib)" : ""));
+      fail_case(fmt::format("{}{}", failure.what(), is_limit ? " (program.memory_mib)" : ""));
     }
-    throw ServerFailure("ended without an answer");
+    fail_case("ended without an answer");
   }
 
  private:
@@ -245,9 +244,13 @@ class LibraryProcess {
     silence.look();
     return silence.get_s() > limit_s;
   }
-  [[noreturn]] static void throw_late(double limit_s) {
-    throw ServerFailure(fmt::format("has been silent for {:g} s (program.time_limit_s)", limit_s),
-                        EvaluationStatus::timed_out);
+  [[noreturn]] void throw_late(double limit_s) const {
+    fail_case(fmt::format("has been silent for {:g} s (program.time_limit_s)", limit_s),
+              EvaluationStatus::timed_out);
+  }
+  [[noreturn]] void fail_case(const std::string& what,
+                              EvaluationStatus status = EvaluationStatus::failed) const {
+    throw ServerFailure(what, status, describe_log());
   }
   [[noreturn]] void fail(const std::string& fault) const {
     throw Error(ErrorKind::bad_data,

@@ -61,10 +61,19 @@ class ProgramServer final : public CaseServer {
     std::vector<CaseAnswer> answers;
     ++id_;
     // Several jobs take little time together, or each is asked for alone.
-    converse(make_question(description_, "evaluate", id_, jobs), [&](const json& message) {
-      read_answers(message, description_, id_, jobs.size() - answers.size(), answers);
-      return answers.size() == jobs.size();
-    });
+    try {
+      converse(make_question(description_, "evaluate", id_, jobs), [&](const json& message) {
+        read_answers(message, description_, id_, jobs.size() - answers.size(), answers);
+        return answers.size() == jobs.size();
+      });
+    } catch (const ServerFailure& failure) {
+      if (failure.status() != EvaluationStatus::timed_out || jobs.size() == 1) {
+        throw;
+      }
+      throw ServerFailure(fmt::format("sent {} of {} answers and then {}", answers.size(),
+                                      jobs.size(), failure.what()),
+                          failure.status(), failure.details());
+    }
     return answers;
   }
 
@@ -87,16 +96,20 @@ class ProgramServer final : public CaseServer {
       while (!take(read_message(child_.receive(limit_s, [] { return false; }).value(), true))) {
       }
     } catch (const LineProcessMemory&) {
-      throw ServerFailure(fmt::format("took more than {:g} MiB of memory (program.memory_mib)",
-                                      limits_.memory_mib));
+      fail(fmt::format("took more than {:g} MiB of memory (program.memory_mib)",
+                       limits_.memory_mib));
     } catch (const LineProcessSilence& error) {
-      throw ServerFailure(fmt::format("{} (program.time_limit_s)", error.what()),
-                          EvaluationStatus::timed_out);
+      fail(fmt::format("{} (program.time_limit_s)", error.what()), EvaluationStatus::timed_out);
     } catch (const LineProcessFailure& error) {
-      throw ServerFailure(error.what());
+      fail(error.what());
     } catch (const ProtocolError& error) {
       throw ProtocolError(error.what() + describe_printed(log_.last_lines()));
     }
+  }
+
+  [[noreturn]] void fail(const std::string& what,
+                         EvaluationStatus status = EvaluationStatus::failed) const {
+    throw ServerFailure(what, status, describe_printed(log_.last_lines()));
   }
 
   std::string name_;

@@ -49,9 +49,8 @@ ContractFinding check_start(const ProblemTrial& trial) {
   const Specimen specimen(trial);
   const Question question{specimen.get_start(), 0};
   const CaseOutcome outcome = specimen.ask({&question, 1}).front();
-  return make_finding(outcome.status == EvaluationStatus::ok
-                          ? ""
-                          : fmt::format("{}: {}", specimen.describe(question), outcome.reason));
+  return make_finding(
+      outcome.status == EvaluationStatus::ok ? "" : specimen.describe_failure(question, outcome));
 }
 
 // A user's problem may answer that a design cannot be simulated. It must not crash on one.
@@ -68,9 +67,11 @@ ContractFinding check_bounds(const ProblemTrial& trial) {
     }
     const std::string what = fmt::format("{}: {}", specimen.describe(corners[i]), outcome.reason);
     if (is_fault_of_program(outcome)) {
-      return make_broken(what);
+      return make_broken(specimen.describe_failure(corners[i], outcome));
     }
-    first = failed++ == 0 ? what : first;
+    if (failed++ == 0) {
+      first = fmt::format("{}: {}", specimen.describe(corners[i]), outcome.reason);
+    }
   }
   ContractFinding finding;
   if (failed > 0) {
@@ -88,8 +89,7 @@ ContractFinding check_finite(const ProblemTrial& trial) {
   const std::vector<CaseOutcome> outcomes = specimen.ask(questions);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (is_fault_of_program(outcomes[i])) {
-      return make_broken(
-          fmt::format("{}: {}", specimen.describe(questions[i]), outcomes[i].reason));
+      return make_broken(specimen.describe_failure(questions[i], outcomes[i]));
     }
   }
   return {};
@@ -268,7 +268,7 @@ ContractFinding check_sets(const ProblemTrial& trial) {
     const CaseJob job{.x = start, .block = &block};
     const CaseOutcome outcome = specimen.problem().simulate({&job, 1}).front();
     if (is_fault_of_program(outcome)) {
-      return make_broken(fmt::format("case 0 of {}: {}", set, outcome.reason));
+      return make_broken(specimen.describe_failure(fmt::format("case 0 of {}", set), outcome));
     }
   }
   return {};

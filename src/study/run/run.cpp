@@ -210,6 +210,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     add_time();
     return std::nullopt;
   }
+  evaluator.tell_warnings();
   // A failed run gets no end record, so that it goes on from the failure when it is started again.
   if (!recorded.ended && result.failure.empty()) {
     journal.append(EndRecord{result.end_reason, result.counts.evaluations});
