@@ -65,7 +65,6 @@ ContractFinding check_bounds(const ProblemTrial& trial) {
     if (outcome.status == EvaluationStatus::ok) {
       continue;
     }
-    const std::string what = fmt::format("{}: {}", specimen.describe(corners[i]), outcome.reason);
     if (is_fault_of_program(outcome)) {
       return make_broken(specimen.describe_failure(corners[i], outcome));
     }
@@ -393,13 +392,20 @@ const std::vector<ProblemCheck>& problem_checks() {
 
 ContractFinding run_problem_check(const ProblemCheck& check, const ProblemTrial& trial) {
   ContractFinding finding;
+  const char* advice = check.advice;
   try {
     finding = check.run(trial);
+  } catch (const BrokenProtocol& error) {
+    finding = make_broken(error.what());
+    finding.ends = true;
+    advice =
+        "correct this answer (docs/problem-protocol.md); the promises that follow are checked "
+        "after that";
   } catch (const std::exception& error) {
     finding = make_broken(error.what());
   }
   if (finding.outcome == ContractOutcome::broken) {
-    finding.detail += fmt::format(". To do: {}", check.advice);
+    finding.detail += fmt::format(". To do: {}", advice);
   }
   return finding;
 }
