@@ -144,10 +144,16 @@ std::vector<NamedOptimizer> list_programs(std::span<const StudyProblem> problems
   std::vector<NamedOptimizer> programs;
   for (const StudyProblem& problem : problems) {
     const LoadedProblem& loaded = problem.loaded;
-    if (!loaded.program.empty() && !is_host_name(loaded.program)) {
+    const json resolved = json::parse(loaded.resolved_json);
+    const bool is_command = resolved.value("kind", "") == "command";
+    if (!loaded.program.empty() && (is_command || !is_host_name(loaded.program))) {
       programs.push_back({.name = loaded.program, .is_problem = true});
       for (const auto& [file, hash] : loaded.input_hashes) {
         programs.back().options.push_back(fmt::format("{} {}", file, hash));
+      }
+      if (is_command && resolved.at("command").contains("input")) {  // may be a script
+        programs.back().options.push_back(
+            fmt::format("input {}", calc_sha256_hex(resolved["command"]["input"].dump())));
       }
     }
   }
