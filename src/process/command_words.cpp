@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/hash.hpp"
 #include "base/text.hpp"
 
 namespace armwright {
@@ -57,6 +57,11 @@ std::vector<std::string> list_program_files(std::string_view command) {
     return !std::filesystem::is_regular_file(word, ignored);
   });
   return files;
+}
+
+std::string calc_program_hash(const std::filesystem::path& file) {
+  constexpr std::size_t kLargestFile_bytes = std::size_t{1} << 30;
+  return calc_sha256_hex(read_file(file, kLargestFile_bytes));
 }
 
 }  // namespace armwright

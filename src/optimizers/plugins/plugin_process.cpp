@@ -11,8 +11,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
-#include "base/hash.hpp"
 #include "base/text.hpp"
 #include "optimizers/interface/isolation.hpp"
 #include "optimizers/plugins/plugin_messages.hpp"
@@ -231,10 +229,9 @@ class ProcessPlugin : public Optimizer {
 };
 
 std::map<std::string, std::string> hash_files(const std::vector<std::string>& files) {
-  constexpr std::size_t kLargestFile = std::size_t{1} << 30;
   std::map<std::string, std::string> hashes;
   for (const std::string& file : files) {
-    hashes[file] = calc_sha256_hex(read_file(file, kLargestFile));
+    hashes[file] = calc_program_hash(file);
   }
   return hashes;
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <stdexcept>
 
@@ -69,7 +68,7 @@ const Setting<std::string> kTableName{"name", kNoDefault,
                                       "its name: letters, digits, '_', '-' and '.'"};
 const Setting<std::string> kTableUnit{"unit", "", "its unit"};
 
-const Setting<std::string> kVariableType{"type", one_of({"real", "integer", "category"}), "real",
+const Setting<std::string> kVariableType{"type", &list_type_names, "real",
                                          "real, integer, or category: one of a list of words"};
 const Setting<double> kVariableLower{"lower", kAnyNumber, kNoDefault,
                                      "lower bound; not for a category"};
@@ -162,8 +161,7 @@ DecisionVariable read_variable_table(const ConfigTable& table) {
                                          join(own, ", ")));
   }
   variable.unit = table.get(kTableUnit);
-  constexpr std::array kTypes = {VariableType::real, VariableType::integer, VariableType::category};
-  variable.type = kTypes[table.get_choice(kVariableType)];
+  variable.type = kVariableTypes[table.get_choice(kVariableType)];
   if (variable.type == VariableType::category) {
     variable.choices = table.get(kVariableChoices);
     variable.upper = static_cast<double>(variable.choices.size()) - 1;
@@ -294,7 +292,7 @@ std::vector<Template> read_command_words(const ConfigTable& table,
     const std::filesystem::path file = templates.back().fill(values);
     if (std::error_code ignored;
         file.is_absolute() && std::filesystem::is_regular_file(file, ignored)) {
-      loaded.input_hashes[word] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));
+      loaded.input_hashes[word] = calc_program_hash(file);
     }
   }
   return templates;

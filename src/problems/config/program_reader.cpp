@@ -5,8 +5,6 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
-#include "base/hash.hpp"
 #include "base/text.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "problems/user/library_server.hpp"
@@ -144,7 +142,7 @@ void load_program(const ConfigTable& table, const ProgramSource& programs, Loade
   loaded.title = made.description.summary;
   set_user_cases(made.description, loaded);
   for (const std::string& file : list_files(command)) {
-    loaded.input_hashes[file] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));
+    loaded.input_hashes[file] = calc_program_hash(file);
   }
   loaded.problem = make_user_problem(std::move(made));
 }

@@ -18,12 +18,12 @@
 #include "armwright/plugin.h"
 #include "base/error.hpp"
 #include "base/file.hpp"
-#include "base/hash.hpp"
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "problems/user/case_messages.hpp"
 #include "problems/user/native_problem.hpp"
 #include "process/child_process.hpp"
+#include "process/command_words.hpp"
 #include "process/json_message.hpp"
 #include "process/output_log.hpp"
 #include "process/packet.hpp"
@@ -35,7 +35,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kOpening_s = 60;  // until the description arrives
-constexpr std::size_t kMostLibraryBytes = std::size_t{1} << 30;
 // The child sends the answers that it has after this time, so that the time limit holds per case.
 constexpr std::chrono::milliseconds kAnswering{50};
 
@@ -379,10 +378,6 @@ class LibraryServer final : public CaseServer {
   std::vector<double> points_;
 };
 
-std::string calc_library_hash(const std::filesystem::path& file) {
-  return calc_sha256_hex(read_file(file, kMostLibraryBytes));
-}
-
 bool is_library_file(const std::filesystem::path& file) {
   std::error_code ignored;
   return std::filesystem::is_regular_file(file, ignored);
@@ -423,10 +418,10 @@ UserDescription describe_library(const std::string& name, const ServerLimits& li
 StartServer make_library_start(const std::string& name, const ServerLimits& limits,
                                const UserDescription& description) {
   const std::filesystem::path file = std::filesystem::absolute(name);
-  const std::string hash = is_library_file(file) ? calc_library_hash(file) : "";
+  const std::string hash = is_library_file(file) ? calc_program_hash(file) : "";
   return [=]() -> std::unique_ptr<CaseServer> {
     require_library_file(name, file);
-    if (calc_library_hash(file) != hash) {
+    if (calc_program_hash(file) != hash) {
       throw Error(ErrorKind::bad_data,
                   fmt::format("problem '{}': it is no longer the file that it was when this "
                               "program started; start this program again",

@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "problems/interface/add_outcome.hpp"
 #include "problems/user/case_messages.hpp"
 #include "problems/user/server_pool.hpp"
 #include "process/json_message.hpp"
@@ -291,17 +292,10 @@ Evaluation UserProblem::aggregate(std::span<const double> /*x*/,
   std::size_t good = 0;     // of these, not failed
   bool has_failed_training = false;
   for (const CaseOutcome& outcome : outcomes) {
-    if (outcome.status != EvaluationStatus::ok && evaluation.status == EvaluationStatus::ok) {
-      evaluation.status = outcome.status;
-      evaluation.reason = outcome.reason;
-    }
-    if (!outcome.has_error) {
-      evaluation.case_errors.push_back(std::numeric_limits<double>::quiet_NaN());
-      ++evaluation.failed_cases;
+    if (!add_outcome(outcome, evaluation)) {
       has_failed_training |= outcome.metrics.empty();
       continue;
     }
-    evaluation.case_errors.push_back(outcome.error);
     ++counted;
     for (std::size_t i = 0; i < objectives + constraints; ++i) {
       worst[i] = std::max(worst[i], outcome.metrics[i]);
