@@ -35,8 +35,8 @@ const Setting<double> kCommandMemory{
     "memory_mib",
     {.lower = 1, .upper = 1e7},
     ServerLimits{}.memory_mib,
-    "for the kind command: how much memory its process may take; beyond it the case is a failed "
-    "case"};
+    "for the kind command: how much memory its process may take, together with what it has "
+    "started; beyond it the case is a failed case"};
 const Setting<std::string> kCommandKeep{
     "keep", one_of({"none", "failed", "all"}), "none",
     "for the kind command: the cases whose working folders are kept in command.workspace"};

@@ -33,7 +33,8 @@ const Setting<double> kProgramMemory{"memory_mib",
                                      {.lower = 1, .upper = 1e7},
                                      ServerLimits{}.memory_mib,
                                      "for the kind program: how much the memory of one of its "
-                                     "processes may grow; beyond it the case is a failed case"};
+                                     "processes may grow, of a program together with what it has "
+                                     "started; beyond it the case is a failed case"};
 const Setting<std::string> kProgramDescription{
     "description", "",
     "for the kind program: its description of itself as JSON, which armwright records; with it, "
