@@ -37,6 +37,7 @@ namespace {
 constexpr std::size_t kMostProgramBytes = std::size_t{1} << 32;
 constexpr std::int64_t kMostBudget = 1'000'000'000'000;
 constexpr std::uint32_t kMostJobs = 4096;
+constexpr double kLongest_s = 1e9;  // as of --time-limit
 
 // A request in which fields that its author's header lacked are zero.
 struct armwright_run_request read_request(const struct armwright_run_request* raw) {
@@ -244,6 +245,12 @@ const struct armwright_run_result* run(const struct armwright_run_request& reque
   if (request.jobs > kMostJobs) {
     throw Error(ErrorKind::usage,
                 fmt::format("jobs is {}; it must be at most {}", request.jobs, kMostJobs));
+  }
+  if (!(request.time_limit_s >= 0 && request.time_limit_s <= kLongest_s)) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("time_limit_s is {}; it must be from 0, which stands for no limit, to {}",
+                    request.time_limit_s, kLongest_s));
   }
   RunRequest own;
   own.plan = make_plan(request, native);

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/hash.hpp"
 #include "base/text.hpp"
 
 namespace armwright {
 
-std::vector<std::string> split_command(std::string_view command) {
+std::vector<std::string> split_command(std::string_view command, std::string_view kind) {
   std::vector<std::string> words;
   bool in_word = false;
   char quote = 0;
@@ -38,24 +38,30 @@ std::vector<std::string> split_command(std::string_view command) {
     }
   }
   if (quote != 0) {
-    throw Error(ErrorKind::usage, fmt::format("optimizer 'exec:{}': a quote ({}) is not closed",
+    throw Error(ErrorKind::usage, fmt::format("{} 'exec:{}': a quote ({}) is not closed", kind,
                                               sanitize(command), quote));
   }
   if (words.empty() || words.front().empty()) {
     throw Error(ErrorKind::usage,
-                "optimizer 'exec:' names no program; write 'exec:PROGRAM ARGUMENTS', as in "
-                "'exec:python3 mine.py'");
+                fmt::format("{} 'exec:' names no program; write 'exec:PROGRAM ARGUMENTS', as in "
+                            "'exec:python3 mine.py'",
+                            kind));
   }
   return words;
 }
 
 std::vector<std::string> list_program_files(std::string_view command) {
-  std::vector<std::string> files = split_command(command);
+  std::vector<std::string> files = split_command(command, "the command");
   std::erase_if(files, [](const std::string& word) {
     std::error_code ignored;
     return !std::filesystem::is_regular_file(word, ignored);
   });
   return files;
+}
+
+std::string calc_program_hash(const std::filesystem::path& file) {
+  constexpr std::size_t kLargestFile_bytes = std::size_t{1} << 30;
+  return calc_sha256_hex(read_file(file, kLargestFile_bytes));
 }
 
 }  // namespace armwright

@@ -1,6 +1,7 @@
-// Splits a command into words as a shell does.
+// The words of a command, and the files that decide what it computes.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,11 +9,16 @@
 namespace armwright {
 
 // Splits at blanks and handles both kinds of quotes and backslashes as a shell does. Expands
-// nothing. Throws Error{usage} if a quote is not closed or there is no word.
-std::vector<std::string> split_command(std::string_view command);
+// nothing. Throws Error{usage} if a quote is not closed or there is no word; its message says what
+// the command is: `kind` is "optimizer" or "problem".
+std::vector<std::string> split_command(std::string_view command, std::string_view kind);
 
 // Returns the words of a command that are files, which decide what the program does: the program
 // and its script. Starts nothing. Throws Error{usage} if the command cannot be split.
 std::vector<std::string> list_program_files(std::string_view command);
+
+// Returns the SHA-256 of a file that decides what a program, a command or a library computes. Throws
+// Error if it cannot be read or has more than 1 GiB.
+std::string calc_program_hash(const std::filesystem::path& file);
 
 }  // namespace armwright

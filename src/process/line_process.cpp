@@ -21,6 +21,7 @@
 #include "base/text.hpp"
 #include "process/fork_support.hpp"
 #include "process/process_watch.hpp"
+#include "process/stop_scope.hpp"
 
 namespace armwright {
 namespace {
@@ -36,12 +37,6 @@ using Clock = LineProcess::Clock;
 Clock::time_point after(double seconds) {
   return Clock::now() +
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-}
-
-// Returns the process's resident memory in MiB, or 0 if the process has ended.
-double read_memory_mib(pid_t pid) {
-  const auto memory = measure_memory(std::to_string(pid));
-  return memory ? static_cast<double>(memory->resident_bytes) / 1048576 : 0;
 }
 
 void set_nonblocking(int fd) {
@@ -168,7 +163,7 @@ LineProcess::~LineProcess() {
 
 void LineProcess::limit_memory(double mib) {
   memory_limit_mib_ = mib;
-  memory_mib_at_start_ = read_memory_mib(pid_);
+  memory_mib_at_start_ = measure_tree_mib(pid_, 0);
 }
 
 std::string LineProcess::kill() {
@@ -187,7 +182,8 @@ void LineProcess::check_memory() {
     return;
   }
   next_memory_check_ = now + kSlice;
-  const double grown_mib = read_memory_mib(pid_) - memory_mib_at_start_;
+  const double grown_mib =
+      measure_tree_mib(pid_, memory_mib_at_start_ + memory_limit_mib_) - memory_mib_at_start_;
   if (grown_mib > memory_limit_mib_) {
     throw LineProcessMemory(
         fmt::format("took {:.0f} MiB of memory beyond what it began with; {:.0f} MiB are allowed "
@@ -246,6 +242,7 @@ void LineProcess::send(const std::string& line, double silence_s) {
     if (has_ended(pid_)) {
       return;
     }
+    check_work_stop();
     silence.look();
     if (silence.get_s() > silence_s) {
       throw LineProcessSilence(fmt::format("has not read its input for {:g} s", silence_s));
@@ -268,6 +265,7 @@ std::optional<std::string> LineProcess::receive(double silence_s,
     if (auto line = take_line()) {
       return line;
     }
+    check_work_stop();
     check_memory();
     log_.take_available();
     if (is_given_up()) {
@@ -350,6 +348,7 @@ LineProcess::Ending LineProcess::complete(double limit_s, std::size_t most_bytes
     if (ended) {
       break;
     }
+    check_work_stop();
     check_memory();
     passed.look();
     if (passed.get_s() > limit_s) {

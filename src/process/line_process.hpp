@@ -50,11 +50,12 @@ class LineProcess {
   LineProcess(const LineProcess&) = delete;
   LineProcess& operator=(const LineProcess&) = delete;
 
-  // Limits the resident memory of the program to its present value plus `mib` MiB. (A ChildProcess
-  // limits private writable memory instead.)
+  // Limits the resident memory of the program and its descendants to its present value plus `mib`
+  // MiB. (A ChildProcess limits private writable memory of one process instead.)
   void limit_memory(double mib);
 
-  // Both throw LineProcessFailure. `silence_s` is the longest time to wait for the child.
+  // These functions, and complete(), throw LineProcessFailure, and WorkStopped as
+  // check_work_stop() does. `silence_s` is the longest time to wait for the child.
   void send(const std::string& line, double silence_s);
   // Returns the next line, or nothing as soon as `is_given_up` returns true; it is called ten times
   // per second.

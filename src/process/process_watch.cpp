@@ -7,8 +7,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <numeric>
+#include <system_error>
 
 namespace armwright {
 
@@ -20,6 +24,59 @@ std::optional<ProcessMemory> measure_memory(const std::string& process) {
   }
   const std::int64_t page = sysconf(_SC_PAGESIZE);
   return ProcessMemory{.resident_bytes = resident * page, .data_bytes = data * page};
+}
+
+namespace {
+
+// Appends a process and its descendants.
+void list_tree(pid_t process, std::vector<pid_t>& tree) {
+  constexpr std::size_t kMostProcesses = 10'000;
+  if (tree.size() == kMostProcesses) {
+    return;
+  }
+  tree.push_back(process);
+  std::error_code ignored;  // the process may end at any time
+  const std::filesystem::directory_iterator threads("/proc/" + std::to_string(process) + "/task",
+                                                    ignored);
+  for (auto thread = begin(threads); thread != end(threads); thread.increment(ignored)) {
+    std::ifstream children(thread->path() / "children");
+    for (pid_t child = 0; children >> child;) {
+      list_tree(child, tree);
+    }
+  }
+}
+
+// Returns the resident memory where a page of n processes counts 1/n; nothing if the process has
+// ended or the kernel does not tell it.
+std::optional<double> measure_share_mib(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/smaps_rollup");
+  std::string line;
+  while (std::getline(file, line)) {
+    double kib = 0;
+    if (std::sscanf(line.c_str(), "Pss: %lf kB", &kib) == 1) {
+      return kib / 1024;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+double measure_tree_mib(pid_t process, double exact_above_mib) {
+  std::vector<pid_t> tree;
+  list_tree(process, tree);
+  std::vector<double> resident_mib;
+  for (const pid_t one : tree) {
+    const auto memory = measure_memory(std::to_string(one));
+    resident_mib.push_back(memory ? static_cast<double>(memory->resident_bytes) / kMib : 0);
+  }
+  const auto sum = [&] { return std::accumulate(resident_mib.begin(), resident_mib.end(), 0.0); };
+  if (tree.size() > 1 && sum() > exact_above_mib) {
+    for (std::size_t i = 0; i < tree.size(); ++i) {
+      resident_mib[i] = measure_share_mib(tree[i]).value_or(resident_mib[i]);
+    }
+  }
+  return sum();
 }
 
 bool has_ended(pid_t child) {

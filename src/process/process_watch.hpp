@@ -32,6 +32,12 @@ struct ProcessMemory {
 // ended.
 std::optional<ProcessMemory> measure_memory(const std::string& process);
 
+// Returns the memory in MiB that a process and its descendants hold resident together; 0 if the
+// process has ended. A descendant whose parent has ended is not found. The processes count shared
+// pages once each; where the sum is above `exact_above_mib`, each counts its share of such pages
+// instead, which takes longer.
+double measure_tree_mib(pid_t process, double exact_above_mib);
+
 // Returns whether a child has ended. Does not reap it, so that its process number stays reserved.
 bool has_ended(pid_t child);
 

@@ -115,6 +115,19 @@ TEST(ProblemContract, AFailureAtABoundThatIsAnsweredIsNoFault) {
   EXPECT_THAT(finding.detail, HasSubstr("too steep"));
 }
 
+TEST(ProblemContract, AnAnswerAgainstTheProtocolEndsTheChecksWithItsOwnAdvice) {
+  const ContractFinding finding = check("Start", make_program("    return 'large'\n"));
+  EXPECT_EQ(finding.outcome, ContractOutcome::broken);
+  EXPECT_TRUE(finding.ends);
+  EXPECT_THAT(finding.detail, AllOf(HasSubstr("no object and no number"),
+                                    HasSubstr(". To do: correct this answer")));
+}
+
+TEST(ProblemContract, ACrashIsShownWithTheLastWordsOfTheProgram) {
+  expect_broken("Start", make_program("    sys.exit('no licence')\n"),
+                "the program ended with exit code 1; the last that it printed: |  no licence");
+}
+
 TEST(ProblemContract, FindsNumbersThatAreNotFinite) {
   expect_broken("Finite", make_program("    return float('nan')\n"),
                 "its objective 'f' is not a finite number");

@@ -78,5 +78,61 @@ INSTANTIATE_TEST_SUITE_P(Ways, KilledProblem,
                            return name;
                          });
 
+// A problem whose cases do not end as long as a file is missing, by the way on which armwright
+// reaches it.
+class InterruptedProblem : public testing::TestWithParam<const char*> {
+ protected:
+  Words make_words(const std::string& out) const {
+    Words words = {"optimize"};
+    const std::string way = GetParam();
+    if (way == "program") {
+      words.push_back("exec:python3 " + get_script("problem.py") + " slow-squares");
+    } else if (way == "library") {
+      words.push_back(ARMWRIGHT_TEST_LIBRARIES "/libsquares.so");
+    } else {
+      write_text(folder_ / "p.toml",
+                 "kind = \"command\"\ncommand.run = \"sh script\"\n"
+                 "command.time_limit_s = 10000\n[[command.input]]\nfile = \"script\"\ntext = '''\n"
+                 "while [ ! -e $TEST_GATE ]; do touch $TEST_GATE.reached; sleep 0.01; done\n"
+                 "echo {x}\n'''\n[[variable]]\nname = \"x\"\nlower = 0\nupper = 1\n"
+                 "[[objective]]\nname = \"f\"\nregex = '(.*)'\n");
+      words.push_back((folder_ / "p.toml").string());
+    }
+    if (way != "command") {
+      words = words + Words{"--set", "program.time_limit_s=10000"};
+    }
+    return words + Words{"--optimizer", "random", "--budget", "60", "--out", out, "--jobs", "2"};
+  }
+
+  Environment make_environment() const {
+    Environment environment;
+    environment.variables = {{"TEST_GATE", gate_.string()}, {"FAULTS_MARK", "interrupted"}};
+    return environment;
+  }
+
+  const TemporaryFolder folder_;
+  const std::filesystem::path gate_ = folder_ / "gate";
+};
+
+TEST_P(InterruptedProblem, ACaseInProgressEndsWithTheRunAndIsSimulatedAgain) {
+  write_text(gate_, "");
+  ASSERT_EQ(run_program(folder_.path(), make_words("whole"), make_environment()).exit_code, 0);
+  std::filesystem::remove(gate_);
+  Program program(folder_.path(), make_words("stopped"), make_environment());
+  ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(folder_ / "gate.reached"); }));
+  program.send(SIGINT);
+  const Outcome stopped = program.wait();
+  EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("interrupted; nothing is lost. To resume:"));
+  EXPECT_TRUE(wait_until([] { return list_processes("interrupted").empty(); }));
+  write_text(gate_, "");
+  const Outcome last = run_program(folder_.path(), make_words("stopped"), make_environment());
+  ASSERT_EQ(last.exit_code, 0) << last.err;
+  expect_same_run(folder_ / "whole", folder_ / "stopped");
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, InterruptedProblem, testing::Values("program", "library", "command"),
+                         [](const auto& test) { return std::string(test.param); });
+
 }  // namespace
 }  // namespace armwright::faults

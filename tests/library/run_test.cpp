@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -152,6 +153,12 @@ TEST_F(LibraryRun, RefusesWithTheMessagesOfTheCommandLine) {
   settings = make_settings("a");
   settings.budget = -1;
   EXPECT_THAT(get_refusal(settings, ARMWRIGHT_RUN_USAGE), HasSubstr("the budget is -1"));
+  for (const double limit_s : {-1.0, std::nan(""), HUGE_VAL}) {
+    settings = make_settings("a");
+    settings.time_limit_s = limit_s;
+    EXPECT_THAT(get_refusal(settings, ARMWRIGHT_RUN_USAGE),
+                HasSubstr("; it must be from 0, which stands for no limit, to 1000000000"));
+  }
   settings = make_settings("a");
   settings.settings = {"sets.tests=3"};
   EXPECT_THAT(get_refusal(settings, ARMWRIGHT_RUN_USAGE), HasSubstr("sets.tests"));

@@ -85,6 +85,9 @@ def compute(x, n, word):
     if x > 4:
         if fault == "exit":
             sys.exit(3)
+        if fault == "last-words":
+            sys.stderr.write(f"process {os.getpid()}: no mesh\n")
+            sys.exit(3)
         if fault == "crash":
             os.kill(os.getpid(), signal.SIGSEGV)
         if fault == "late":
@@ -100,6 +103,9 @@ def compute(x, n, word):
         if fault == "memory":
             global hoard
             hoard = bytearray(400 << 20)
+            time.sleep(600)
+        if fault == "child-memory":
+            subprocess.Popen([sys.executable, "-c", "b = bytearray(400 << 20); import time; time.sleep(600)"])
             time.sleep(600)
         if fault == "closed":
             os.close(1)
@@ -123,6 +129,10 @@ def compute(x, n, word):
             return {"status": "tired"}
     if fault == "slow-squares":
         time.sleep(0.001)
+        gate = os.environ.get("TEST_GATE")
+        while gate and x > 1 and not os.path.exists(gate):  # like a case without end
+            open(gate + ".reached", "w").close()
+            time.sleep(0.01)
         residuals = [x - 1.5, 0.5 * n, 1.0 if word == "dear" else 0.25, math.sin(3 * x)]
         return {"objectives": [sum(r * r for r in residuals)], "residuals": residuals}
     if fault == "sum":
@@ -161,6 +171,8 @@ for line in sys.stdin:
             if fault == "too-many":
                 answers.append(1)
             if fault == "too-few":
+                answers.pop()
+            if fault == "too-few-together" and len(answers) > 1:
                 answers.pop()
             if fault == "other-question":
                 message["id"] += 1

@@ -7,6 +7,7 @@
 #include "cli/commands/contract_report.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/session.hpp"
+#include "problems/user/user_problem.hpp"
 #include "study/contract/problem_contract.hpp"
 
 namespace armwright {
@@ -44,6 +45,7 @@ int run_check_problem(const CheckProblemOptions& options, Session& session) {
     const LoadedProblem problem = trial.load();
     thing.name = problem.name;
     thing.summary = problem.title;
+    require_server(*problem.problem);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::bad_data) {
       throw;

@@ -46,6 +46,9 @@ int report_contract(const CheckedThing& thing, const std::vector<NamedCheck>& ch
                         {"promise", check.promise},
                         {"outcome", to_string(finding.outcome)},
                         {"detail", sanitize(finding.detail)}});
+    if (finding.ends) {
+      break;
+    }
   }
   if (as_json) {
     write_stdout(json{{thing.kind, thing.name}, {"broken", broken}, {"checks", findings}}.dump(1) +

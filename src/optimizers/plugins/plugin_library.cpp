@@ -10,13 +10,12 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
-#include "base/hash.hpp"
 #include "base/text.hpp"
 #include "optimizers/plugins/plugin_call.hpp"
 #include "optimizers/plugins/plugin_description.hpp"
 #include "optimizers/plugins/recorded_optimizer.hpp"
 #include "process/child_process.hpp"
+#include "process/command_words.hpp"
 #include "process/output_log.hpp"
 #include "process/packet.hpp"
 #include "process/process_watch.hpp"
@@ -24,7 +23,6 @@
 namespace armwright {
 namespace {
 
-constexpr std::size_t kMaxLibraryBytes = std::size_t{1} << 30;
 // The options that every library has in addition to its own.
 std::vector<OptionSpec> make_own_options() {
   std::vector<OptionSpec> options = {
@@ -128,10 +126,6 @@ class StrictEvaluator : public Evaluator {
   std::size_t evaluations_ = 0;
 };
 
-std::string calc_file_hash(const std::filesystem::path& file) {
-  return calc_sha256_hex(read_file(file, kMaxLibraryBytes));
-}
-
 struct Library {
   std::string name;
   std::filesystem::path file;  // absolute: dlopen looks elsewhere for a name without a slash
@@ -152,7 +146,7 @@ class LibraryOptimizer : public Optimizer {
   }
 
   void minimize(Evaluator& evaluator, std::uint64_t seed) override {
-    if (calc_file_hash(library_.file) != library_.hash) {
+    if (calc_program_hash(library_.file) != library_.hash) {
       fail("is no longer the file that it was when this program started");
     }
     StrictEvaluator strict(library_.name, library_.keeps_bounds, evaluator);
@@ -232,7 +226,7 @@ OptimizerRow load_library_plugin(const std::filesystem::path& file, const std::s
   }
   Library library{.name = name.empty() ? file.string() : name,
                   .file = std::filesystem::absolute(file),
-                  .hash = calc_file_hash(file)};
+                  .hash = calc_program_hash(file)};
   try {
     const PluginDescription description = describe(library.file, loading);
     library.keeps_bounds = (description.capabilities & ARMWRIGHT_BOUNDS) != 0;

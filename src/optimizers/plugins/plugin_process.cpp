@@ -11,8 +11,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
-#include "base/hash.hpp"
 #include "base/text.hpp"
 #include "optimizers/interface/isolation.hpp"
 #include "optimizers/plugins/plugin_messages.hpp"
@@ -231,10 +229,9 @@ class ProcessPlugin : public Optimizer {
 };
 
 std::map<std::string, std::string> hash_files(const std::vector<std::string>& files) {
-  constexpr std::size_t kLargestFile = std::size_t{1} << 30;
   std::map<std::string, std::string> hashes;
   for (const std::string& file : files) {
-    hashes[file] = calc_sha256_hex(read_file(file, kLargestFile));
+    hashes[file] = calc_program_hash(file);
   }
   return hashes;
 }
@@ -252,7 +249,7 @@ void check_option_names(const OptimizerRow& row) {
 }  // namespace
 
 OptimizerRow load_process_plugin(std::string_view command, double loading_s) {
-  const std::vector<std::string> words = split_command(command);
+  const std::vector<std::string> words = split_command(command, "optimizer");
   OutputLog log;
   try {
     LineProcess child(words, log);

@@ -4,12 +4,12 @@
 
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "problems/analytic/bbob.hpp"
 #include "problems/analytic/function_instance.hpp"
+#include "problems/interface/add_outcome.hpp"
 
 namespace armwright {
 namespace {
@@ -88,16 +88,9 @@ class AnalyticProblem : public Problem {
     double error_sum = 0;
     std::vector<double> constraint_sums(description_.constraints.size());
     for (const CaseOutcome& outcome : outcomes) {
-      if (outcome.status != EvaluationStatus::ok && evaluation.status == EvaluationStatus::ok) {
-        evaluation.status = outcome.status;
-        evaluation.reason = outcome.reason;
-      }
-      if (!outcome.has_error) {
-        evaluation.case_errors.push_back(std::numeric_limits<double>::quiet_NaN());
-        ++evaluation.failed_cases;
+      if (!add_outcome(outcome, evaluation)) {
         continue;
       }
-      evaluation.case_errors.push_back(outcome.error);
       error_sum += outcome.error;
       assert(outcome.metrics.size() == constraint_sums.size());
       for (std::size_t i = 0; i < constraint_sums.size(); ++i) {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <stdexcept>
 
@@ -36,8 +35,8 @@ const Setting<double> kCommandMemory{
     "memory_mib",
     {.lower = 1, .upper = 1e7},
     ServerLimits{}.memory_mib,
-    "for the kind command: how much memory its process may take; beyond it the case is a failed "
-    "case"};
+    "for the kind command: how much memory its process may take, together with what it has "
+    "started; beyond it the case is a failed case"};
 const Setting<std::string> kCommandKeep{
     "keep", one_of({"none", "failed", "all"}), "none",
     "for the kind command: the cases whose working folders are kept in command.workspace"};
@@ -69,7 +68,7 @@ const Setting<std::string> kTableName{"name", kNoDefault,
                                       "its name: letters, digits, '_', '-' and '.'"};
 const Setting<std::string> kTableUnit{"unit", "", "its unit"};
 
-const Setting<std::string> kVariableType{"type", one_of({"real", "integer", "category"}), "real",
+const Setting<std::string> kVariableType{"type", &list_type_names, "real",
                                          "real, integer, or category: one of a list of words"};
 const Setting<double> kVariableLower{"lower", kAnyNumber, kNoDefault,
                                      "lower bound; not for a category"};
@@ -162,8 +161,7 @@ DecisionVariable read_variable_table(const ConfigTable& table) {
                                          join(own, ", ")));
   }
   variable.unit = table.get(kTableUnit);
-  constexpr std::array kTypes = {VariableType::real, VariableType::integer, VariableType::category};
-  variable.type = kTypes[table.get_choice(kVariableType)];
+  variable.type = kVariableTypes[table.get_choice(kVariableType)];
   if (variable.type == VariableType::category) {
     variable.choices = table.get(kVariableChoices);
     variable.upper = static_cast<double>(variable.choices.size()) - 1;
@@ -280,7 +278,7 @@ std::vector<Template> read_command_words(const ConfigTable& table,
                                          LoadedProblem& loaded) {
   std::vector<std::string> words;
   try {
-    words = split_command(table.get(kCommandRun));
+    words = split_command(table.get(kCommandRun), "problem");
   } catch (const Error&) {
     table.refuse(kCommandRun, "it must begin with a program, and every quote must be closed");
   }
@@ -294,7 +292,7 @@ std::vector<Template> read_command_words(const ConfigTable& table,
     const std::filesystem::path file = templates.back().fill(values);
     if (std::error_code ignored;
         file.is_absolute() && std::filesystem::is_regular_file(file, ignored)) {
-      loaded.input_hashes[word] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));
+      loaded.input_hashes[word] = calc_program_hash(file);
     }
   }
   return templates;

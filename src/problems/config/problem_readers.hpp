@@ -55,8 +55,6 @@ bool is_program_name(std::string_view name);
 // (problems/user).
 void load_program(const ConfigTable& table, const ProgramSource& programs, LoadedProblem& loaded);
 
-// The largest file of a program that is hashed as an input.
-inline constexpr std::size_t kProgramLimit_bytes = std::size_t{1} << 30;
 // Why a problem that is read from a record cannot be simulated.
 inline constexpr const char* kStartsNothing =
     "this command reads what is recorded and starts no program";

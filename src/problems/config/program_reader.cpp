@@ -5,8 +5,6 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
-#include "base/hash.hpp"
 #include "base/text.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "problems/user/library_server.hpp"
@@ -35,7 +33,8 @@ const Setting<double> kProgramMemory{"memory_mib",
                                      {.lower = 1, .upper = 1e7},
                                      ServerLimits{}.memory_mib,
                                      "for the kind program: how much the memory of one of its "
-                                     "processes may grow; beyond it the case is a failed case"};
+                                     "processes may grow, of a program together with what it has "
+                                     "started; beyond it the case is a failed case"};
 const Setting<std::string> kProgramDescription{
     "description", "",
     "for the kind program: its description of itself as JSON, which armwright records; with it, "
@@ -144,7 +143,7 @@ void load_program(const ConfigTable& table, const ProgramSource& programs, Loade
   loaded.title = made.description.summary;
   set_user_cases(made.description, loaded);
   for (const std::string& file : list_files(command)) {
-    loaded.input_hashes[file] = calc_sha256_hex(read_file(file, kProgramLimit_bytes));
+    loaded.input_hashes[file] = calc_program_hash(file);
   }
   loaded.problem = make_user_problem(std::move(made));
 }

@@ -9,12 +9,13 @@
 #include "base/error.hpp"
 #include "problems/analytic/analytic.hpp"
 #include "problems/config/problem_loader.hpp"
+#include "problems/user/user_problem.hpp"
 
 namespace armwright {
 namespace {
 
 // A problem with another start.
-class StartedElsewhere final : public Problem {
+class StartedElsewhere final : public ProblemAdapter {
  public:
   StartedElsewhere(std::shared_ptr<const Problem> problem, const std::vector<double>& start)
       : problem_(std::move(problem)), description_(problem_->description()) {
@@ -44,6 +45,7 @@ class StartedElsewhere final : public Problem {
                          std::uint64_t number) const override {
     return problem_->record_case(x, block, number);
   }
+  const Problem& adapted() const override { return *problem_; }
   void forget_cases() const override { problem_->forget_cases(); }
 
  private:

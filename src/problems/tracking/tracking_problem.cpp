@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "problems/interface/add_outcome.hpp"
 #include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {
@@ -352,22 +353,11 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   double lost = 0;  // failures, and cases with a small error that diverged on their last points
   std::vector<double> errors_m;
   for (const CaseOutcome& outcome : outcomes) {
-    // The status `abandoned` replaces any other, because it says that the numbers are bounds.
-    const bool is_first_abandoned = outcome.status == EvaluationStatus::abandoned &&
-                                    evaluation.status != EvaluationStatus::abandoned;
-    if (is_first_abandoned ||
-        (outcome.status != EvaluationStatus::ok && evaluation.status == EvaluationStatus::ok)) {
-      evaluation.status = outcome.status;
-      evaluation.reason = outcome.reason;
-    }
-    if (!outcome.has_error) {
-      evaluation.case_errors.push_back(std::numeric_limits<double>::quiet_NaN());
-      ++evaluation.failed_cases;
+    if (!add_outcome(outcome, evaluation)) {
       ++failures;
       ++lost;
       continue;
     }
-    evaluation.case_errors.push_back(outcome.error);
     errors_m.push_back(outcome.error);
     const bool failed = outcome.error > kFailureError_m;
     failures += failed ? 1 : 0;

@@ -7,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "problems/interface/problem.hpp"
@@ -19,6 +20,9 @@ namespace armwright {
 struct CaseAnswer {
   EvaluationStatus status = EvaluationStatus::ok;
   std::string reason;
+  // What a warning adds to the reason, as in "; the last that it printed: ...". It is not recorded,
+  // because it may differ each time.
+  std::string details;
   std::vector<double> objectives;
   std::vector<double> constraints;
   std::vector<double> metrics;
@@ -30,12 +34,15 @@ struct CaseAnswer {
 class ServerFailure : public std::runtime_error {
  public:
   explicit ServerFailure(const std::string& what,
-                         EvaluationStatus status = EvaluationStatus::failed)
-      : std::runtime_error(what), status_(status) {}
+                         EvaluationStatus status = EvaluationStatus::failed,
+                         std::string details = "")
+      : std::runtime_error(what), status_(status), details_(std::move(details)) {}
   EvaluationStatus status() const { return status_; }
+  const std::string& details() const { return details_; }  // as CaseAnswer::details
 
  private:
   EvaluationStatus status_;
+  std::string details_;
 };
 
 // Answers jobs, one call at a time.

@@ -133,13 +133,15 @@ class CommandServer final : public CaseServer {
   }
 
   // Runs the command. The reasons of failures are recorded, so they have neither a path nor what
-  // the command printed: both may differ each time.
+  // the command wrote: both may differ each time. The details have what it wrote.
   CaseAnswer run(const std::vector<std::string>& words, const std::filesystem::path& folder,
                  OutputLog& log, std::string& output) const {
-    const auto fail = [](EvaluationStatus status, std::string_view what) {
+    const auto fail = [&](EvaluationStatus status, std::string_view what,
+                          const std::string& found = "") {
       CaseAnswer answer;
       answer.status = status;
       answer.reason = fmt::format("the command {}", what);
+      answer.details = found + describe_printed(log.last_lines());
       return answer;
     };
     try {
@@ -164,7 +166,8 @@ class CommandServer final : public CaseServer {
                   fmt::format("took more than {:g} MiB of memory (command.memory_mib)",
                               plan_->limits.memory_mib));
     } catch (const MissingResult& missing) {
-      return fail(EvaluationStatus::failed, fmt::format("left no result: {}", missing.what()));
+      return fail(EvaluationStatus::failed, fmt::format("left no result: {}", missing.what()),
+                  missing.found());
     }
   }
 

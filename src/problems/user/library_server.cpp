@@ -18,14 +18,16 @@
 #include "armwright/plugin.h"
 #include "base/error.hpp"
 #include "base/file.hpp"
-#include "base/hash.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "problems/user/case_messages.hpp"
 #include "problems/user/native_problem.hpp"
 #include "process/child_process.hpp"
+#include "process/command_words.hpp"
 #include "process/json_message.hpp"
 #include "process/output_log.hpp"
 #include "process/packet.hpp"
+#include "process/stop_scope.hpp"
 
 namespace armwright {
 namespace {
@@ -33,7 +35,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kOpening_s = 60;  // until the description arrives
-constexpr std::size_t kMostLibraryBytes = std::size_t{1} << 30;
 // The child sends the answers that it has after this time, so that the time limit holds per case.
 constexpr std::chrono::milliseconds kAnswering{50};
 
@@ -230,20 +231,25 @@ class LibraryProcess {
       }
     } catch (const ChildFailure& failure) {
       const bool is_limit = *failure.limit() != '\0';
-      throw ServerFailure(
-          fmt::format("{}{}", failure.what(), is_limit ? " (program.memory_mib)" : ""));
+      fail_case(fmt::format("{}{}", failure.what(), is_limit ? " (program.memory_mib)" : ""));
     }
-    throw ServerFailure("ended without an answer");
+    fail_case("ended without an answer");
   }
 
  private:
   static bool is_late(WakingTime& silence, double limit_s) {
+    check_work_stop();
+    check_reading();
     silence.look();
     return silence.get_s() > limit_s;
   }
-  [[noreturn]] static void throw_late(double limit_s) {
-    throw ServerFailure(fmt::format("has been silent for {:g} s (program.time_limit_s)", limit_s),
-                        EvaluationStatus::timed_out);
+  [[noreturn]] void throw_late(double limit_s) const {
+    fail_case(fmt::format("has been silent for {:g} s (program.time_limit_s)", limit_s),
+              EvaluationStatus::timed_out);
+  }
+  [[noreturn]] void fail_case(const std::string& what,
+                              EvaluationStatus status = EvaluationStatus::failed) const {
+    throw ServerFailure(what, status, describe_log());
   }
   [[noreturn]] void fail(const std::string& fault) const {
     throw Error(ErrorKind::bad_data,
@@ -372,10 +378,6 @@ class LibraryServer final : public CaseServer {
   std::vector<double> points_;
 };
 
-std::string calc_library_hash(const std::filesystem::path& file) {
-  return calc_sha256_hex(read_file(file, kMostLibraryBytes));
-}
-
 bool is_library_file(const std::filesystem::path& file) {
   std::error_code ignored;
   return std::filesystem::is_regular_file(file, ignored);
@@ -416,10 +418,10 @@ UserDescription describe_library(const std::string& name, const ServerLimits& li
 StartServer make_library_start(const std::string& name, const ServerLimits& limits,
                                const UserDescription& description) {
   const std::filesystem::path file = std::filesystem::absolute(name);
-  const std::string hash = is_library_file(file) ? calc_library_hash(file) : "";
+  const std::string hash = is_library_file(file) ? calc_program_hash(file) : "";
   return [=]() -> std::unique_ptr<CaseServer> {
     require_library_file(name, file);
-    if (calc_library_hash(file) != hash) {
+    if (calc_program_hash(file) != hash) {
       throw Error(ErrorKind::bad_data,
                   fmt::format("problem '{}': it is no longer the file that it was when this "
                               "program started; start this program again",

@@ -78,19 +78,17 @@ void take_native_category(const armwright_variable& raw, const std::string& wher
 }
 
 DecisionVariable take_native_variable(const armwright_variable& raw, const std::string& where) {
-  static constexpr std::array<VariableType, 3> kTypes = {VariableType::real, VariableType::integer,
-                                                         VariableType::category};
   static_assert(ARMWRIGHT_VARIABLE_REAL == 0 && ARMWRIGHT_VARIABLE_INTEGER == 1 &&
                 ARMWRIGHT_VARIABLE_CATEGORY == 2);
   DecisionVariable variable;
   variable.name = take_native_text(raw.name, where + ".name");
   variable.unit = take_native_text(raw.unit, where + ".unit");
-  if (raw.type < 0 || raw.type >= static_cast<std::int32_t>(kTypes.size())) {
+  if (raw.type < 0 || raw.type >= static_cast<std::int32_t>(kVariableTypes.size())) {
     refuse_native(
         where + ".type",
         fmt::format("is {}; possible are 0 (real), 1 (integer) and 2 (category)", raw.type));
   }
-  variable.type = kTypes[static_cast<std::size_t>(raw.type)];
+  variable.type = kVariableTypes[static_cast<std::size_t>(raw.type)];
   if (variable.type == VariableType::category) {
     take_native_category(raw, where, variable);
     return variable;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "problems/user/case_messages.hpp"
 #include "process/command_words.hpp"
@@ -32,7 +33,10 @@ UserDescription ask_description(LineProcess& child, const OutputLog& log, const 
   std::string fault;
   try {
     child.send(make_hello_line(), kLoading_s);
-    const auto line = child.receive(kLoading_s, [] { return false; });
+    const auto line = child.receive(kLoading_s, [] {
+      check_reading();  // Ctrl-C while a problem is loaded
+      return false;
+    });
     return read_user_description(read_message(line.value()));
   } catch (const ProtocolError& error) {
     fault = error.what();
@@ -57,10 +61,19 @@ class ProgramServer final : public CaseServer {
     std::vector<CaseAnswer> answers;
     ++id_;
     // Several jobs take little time together, or each is asked for alone.
-    converse(make_question(description_, "evaluate", id_, jobs), [&](const json& message) {
-      read_answers(message, description_, id_, jobs.size() - answers.size(), answers);
-      return answers.size() == jobs.size();
-    });
+    try {
+      converse(make_question(description_, "evaluate", id_, jobs), [&](const json& message) {
+        read_answers(message, description_, id_, jobs.size() - answers.size(), answers);
+        return answers.size() == jobs.size();
+      });
+    } catch (const ServerFailure& failure) {
+      if (failure.status() != EvaluationStatus::timed_out || jobs.size() == 1) {
+        throw;
+      }
+      throw ServerFailure(fmt::format("sent {} of {} answers and then {}", answers.size(),
+                                      jobs.size(), failure.what()),
+                          failure.status(), failure.details());
+    }
     return answers;
   }
 
@@ -83,16 +96,20 @@ class ProgramServer final : public CaseServer {
       while (!take(read_message(child_.receive(limit_s, [] { return false; }).value(), true))) {
       }
     } catch (const LineProcessMemory&) {
-      throw ServerFailure(fmt::format("took more than {:g} MiB of memory (program.memory_mib)",
-                                      limits_.memory_mib));
+      fail(fmt::format("took more than {:g} MiB of memory (program.memory_mib)",
+                       limits_.memory_mib));
     } catch (const LineProcessSilence& error) {
-      throw ServerFailure(fmt::format("{} (program.time_limit_s)", error.what()),
-                          EvaluationStatus::timed_out);
+      fail(fmt::format("{} (program.time_limit_s)", error.what()), EvaluationStatus::timed_out);
     } catch (const LineProcessFailure& error) {
-      throw ServerFailure(error.what());
+      fail(error.what());
     } catch (const ProtocolError& error) {
       throw ProtocolError(error.what() + describe_printed(log_.last_lines()));
     }
+  }
+
+  [[noreturn]] void fail(const std::string& what,
+                         EvaluationStatus status = EvaluationStatus::failed) const {
+    throw ServerFailure(what, status, describe_printed(log_.last_lines()));
   }
 
   std::string name_;
@@ -107,7 +124,7 @@ class ProgramServer final : public CaseServer {
 
 UserDescription describe_program(std::string_view command) {
   OutputLog log;
-  LineProcess child(split_command(command), log);
+  LineProcess child(split_command(command, "problem"), log);
   UserDescription description = ask_description(child, log, fmt::format("exec:{}", command));
   child.send(R"({"type":"quit"})", kProgramEnd_s);
   child.finish(kProgramEnd_s);
@@ -116,7 +133,7 @@ UserDescription describe_program(std::string_view command) {
 
 StartServer make_program_start(std::string_view command, const ServerLimits& limits,
                                const UserDescription& description) {
-  return [name = fmt::format("exec:{}", command), words = split_command(command), limits,
+  return [name = fmt::format("exec:{}", command), words = split_command(command, "problem"), limits,
           description]() -> std::unique_ptr<CaseServer> {
     return std::make_unique<ProgramServer>(name, words, limits, description);
   };

@@ -33,7 +33,7 @@ std::string describe_source(const std::string& from) {
 }
 
 // Returns the number that a text has. Simulators also write "+1.5".
-double to_number(std::string_view text, const std::string& where) {
+double to_number(std::string_view text, const std::string& where, const std::string& place = "") {
   std::string_view digits = trim(text);
   if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') {
     digits.remove_prefix(1);
@@ -41,8 +41,8 @@ double to_number(std::string_view text, const std::string& where) {
   if (const auto number = parse_finite(digits)) {
     return *number;
   }
-  throw MissingResult(
-      fmt::format("{} is {}, not a finite number", where, quote(std::string(text))));
+  throw MissingResult(fmt::format("{} is not a finite number", where),
+                      fmt::format("; it is {}{}", quote(std::string(text)), place));
 }
 
 // Calls `use` with each line that is not empty, until it returns false.
@@ -115,8 +115,8 @@ double read_column(const std::string& text, const ResultReading& reading) {
       const auto found = std::ranges::find(names, std::string_view(reading.what));
       const auto number = parse_integer(reading.what);
       if (found == names.end() && !(number && *number >= 1 && *number <= std::ssize(names))) {
-        throw MissingResult(fmt::format("{} has no column {}; its first line is {}", source,
-                                        quote(reading.what), quote(std::string(line))));
+        throw MissingResult(fmt::format("{} has no column {}", source, quote(reading.what)),
+                            fmt::format("; its first line is {}", quote(std::string(line))));
       }
       column = found != names.end() ? static_cast<std::size_t>(found - names.begin())
                                     : static_cast<std::size_t>(*number - 1);
@@ -126,12 +126,12 @@ double read_column(const std::string& text, const ResultReading& reading) {
       }
     }
     const auto fields = splitter->split(line);
-    const std::string where =
-        fmt::format("column {} of {} in row {}", quote(reading.what), source, line_number);
+    const std::string where = fmt::format("column {} of {}", quote(reading.what), source);
+    const std::string row = fmt::format(" in row {}", line_number);
     if (column >= fields.size()) {
-      throw MissingResult(fmt::format("{} is missing", where));
+      throw MissingResult(fmt::format("{} is too short", where), "; it ends" + row);
     }
-    const double value = to_number(fields[column], where);
+    const double value = to_number(fields[column], where, row);
     sum += value;
     ++count;
     const bool replaces = !result || reading.row == ColumnRow::last ||
@@ -207,10 +207,11 @@ const nlohmann::json& CommandResults::get_json(const std::string& from) {
     check_json_depth(text, source);
     return parsed_[from] = nlohmann::json::parse(text);
   } catch (const Error& error) {
-    throw MissingResult(error.what());
+    throw MissingResult(fmt::format("{} is not JSON of a usual depth", source),
+                        fmt::format(" ({})", error.what()));
   } catch (const nlohmann::json::exception& error) {
-    throw MissingResult(
-        fmt::format("{} is not JSON ({})", source, describe_json_error(error.what())));
+    throw MissingResult(fmt::format("{} is not JSON", source),
+                        fmt::format(" ({})", describe_json_error(error.what())));
   }
 }
 
@@ -237,8 +238,8 @@ double CommandResults::read(const ResultReading& reading) {
   };
   const nlohmann::json value = find();
   if (!value.is_number() || !std::isfinite(value.get<double>())) {
-    throw MissingResult(fmt::format("{} has {} at {}, not a finite number", source, quote(value),
-                                    quote(reading.what)));
+    throw MissingResult(fmt::format("{} has no finite number at {}", source, quote(reading.what)),
+                        fmt::format("; it has {}", quote(value)));
   }
   return value.get<double>();
 }

@@ -11,6 +11,7 @@
 #include <regex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace armwright {
 
@@ -32,9 +33,16 @@ struct ResultReading {
   std::regex pattern;
 };
 
-// A result is missing or is no number. The message names the file and what was looked for.
+// A result is missing or is no number. The message names the file and what was looked for; it is
+// the same whenever the result is missing. `found` completes it for a warning, as in "; it is 'nan'".
 class MissingResult : public std::runtime_error {
-  using std::runtime_error::runtime_error;
+ public:
+  explicit MissingResult(const std::string& what, std::string found = "")
+      : std::runtime_error(what), found_(std::move(found)) {}
+  const std::string& found() const { return found_; }
+
+ private:
+  std::string found_;
 };
 
 inline constexpr std::size_t kMostResult_bytes = std::size_t{64} << 20;  // of one file

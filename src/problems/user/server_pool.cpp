@@ -8,6 +8,8 @@
 #include <thread>
 #include <utility>
 
+#include "process/stop_scope.hpp"
+
 namespace armwright {
 
 // Starts servers on a thread of its own. The kernel kills a server's process when the thread that
@@ -29,7 +31,10 @@ class ServerPool::Launcher {
   Launcher& operator=(const Launcher&) = delete;
 
   std::unique_ptr<CaseServer> run(const std::function<std::unique_ptr<CaseServer>()>& start) {
-    Task task(start);
+    Task task([&start, stop = get_work_stop()] {
+      const StopScope scope(stop);  // the work of the thread that asks
+      return start();
+    });
     auto started = task.get_future();
     {
       const std::lock_guard lock(mutex_);

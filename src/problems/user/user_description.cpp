@@ -23,9 +23,6 @@ constexpr std::size_t kMostOutputs = 1000;  // objectives, constraints and metri
 constexpr std::size_t kMostWords = 1000;    // per category
 constexpr double kMostUserCases = 1e6;      // as kMostCases
 
-constexpr std::array<VariableType, 3> kTypes = {VariableType::real, VariableType::integer,
-                                                VariableType::category};
-
 // Reads the fields of one object of the description.
 class FieldReader {
  public:
@@ -106,13 +103,6 @@ class FieldReader {
   std::string where_;
 };
 
-std::vector<std::string> list_type_names() {
-  std::vector<std::string> names;
-  std::ranges::transform(kTypes, std::back_inserter(names),
-                         [](VariableType type) { return to_string(type); });
-  return names;
-}
-
 std::vector<std::string> read_words(const FieldReader& fields) {
   const json& list = fields.get("choices");
   if (!list.is_array() || list.size() > kMostWords ||
@@ -130,7 +120,7 @@ DecisionVariable read_variable(const FieldReader& fields) {
   DecisionVariable variable;
   variable.name = fields.name();
   variable.unit = fields.text("unit", "");
-  variable.type = kTypes[fields.choice("type", list_type_names())];
+  variable.type = kVariableTypes[fields.choice("type", list_type_names())];
   if (variable.type == VariableType::category) {
     variable.choices = read_words(fields);
     variable.upper = static_cast<double>(variable.choices.size()) - 1;
@@ -225,6 +215,13 @@ void check_variable(const DecisionVariable& variable, const std::string& field,
 }
 
 }  // namespace
+
+std::vector<std::string> list_type_names() {
+  std::vector<std::string> names;
+  std::ranges::transform(kVariableTypes, std::back_inserter(names),
+                         [](VariableType type) { return to_string(type); });
+  return names;
+}
 
 void check_description(const UserDescription& description, const RefuseField& refuse) {
   if (description.variables.empty()) {

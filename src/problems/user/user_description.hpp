@@ -3,6 +3,7 @@
 // Both give the same struct, and check_description() checks both.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,11 @@ namespace armwright {
 
 // The version of the protocol between armwright and the programs of problems.
 inline constexpr int kProblemProtocol = 1;
+
+// The types of variables, in the order in which problem.h numbers them.
+inline constexpr std::array kVariableTypes = {VariableType::real, VariableType::integer,
+                                              VariableType::category};
+std::vector<std::string> list_type_names();
 
 // One of the numbers that are minimised or maximised.
 struct UserObjective {

@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "problems/interface/add_outcome.hpp"
 #include "problems/user/case_messages.hpp"
 #include "problems/user/server_pool.hpp"
 #include "process/json_message.hpp"
@@ -71,6 +72,7 @@ class UserProblem final : public Problem {
                                          std::span<const CaseOutcome> outcomes,
                                          std::size_t cases) const override;
 
+  ProblemWarnings& warnings() const { return warnings_; }
   const UserDescription& user_description() const { return program_.description; }
   void require_start() const {
     if (!program_.start) {
@@ -144,6 +146,11 @@ class UserProblem final : public Problem {
     } catch (const ServerFailure& failure) {
       server.reset();
       if (jobs.size() > 1) {
+        if (failure.status() == EvaluationStatus::timed_out) {
+          warnings_.add(
+              fmt::format("the program {}; each case is asked for again, alone", failure.what()),
+              failure.details());
+        }
         for (const CaseJob& job : jobs) {
           ask({&job, 1}, outcomes);
         }
@@ -153,10 +160,19 @@ class UserProblem final : public Problem {
         ask(jobs, outcomes, true);
         return;
       }
-      outcomes.push_back(make_failure(jobs.front(), failure.status(),
-                                      fmt::format("the program {}", failure.what())));
+      const std::string reason = fmt::format("the program {}", failure.what());
+      warn(reason, failure.details());
+      outcomes.push_back(make_failure(jobs.front(), failure.status(), reason));
     } catch (const ProtocolError& error) {
-      fail(fmt::format("it {}", error.what()));
+      throw BrokenProtocol(ErrorKind::bad_data, fmt::format("problem '{}': it {}",
+                                                            sanitize(program_.name), error.what()));
+    }
+  }
+
+  // Without details, a warning would repeat what the record of the case says.
+  void warn(const std::string& reason, const std::string& details) const {
+    if (!details.empty()) {
+      warnings_.add(reason, details);
     }
   }
 
@@ -169,6 +185,7 @@ class UserProblem final : public Problem {
   CaseOutcome make_outcome(const CaseJob& job, CaseAnswer answer) const {
     const UserDescription& described = program_.description;
     if (answer.status != EvaluationStatus::ok) {
+      warn(answer.reason, answer.details);
       return make_failure(job, answer.status,
                           answer.reason.empty() ? "the program gives no reason" : answer.reason);
     }
@@ -258,6 +275,7 @@ class UserProblem final : public Problem {
   UserProgram program_;
   ProblemDescription description_;
   mutable ServerPool pool_;
+  mutable ProblemWarnings warnings_;
   mutable std::atomic<double> case_s_ = kLongQuestion_s;  // of the last question
 };
 
@@ -274,17 +292,10 @@ Evaluation UserProblem::aggregate(std::span<const double> /*x*/,
   std::size_t good = 0;     // of these, not failed
   bool has_failed_training = false;
   for (const CaseOutcome& outcome : outcomes) {
-    if (outcome.status != EvaluationStatus::ok && evaluation.status == EvaluationStatus::ok) {
-      evaluation.status = outcome.status;
-      evaluation.reason = outcome.reason;
-    }
-    if (!outcome.has_error) {
-      evaluation.case_errors.push_back(std::numeric_limits<double>::quiet_NaN());
-      ++evaluation.failed_cases;
+    if (!add_outcome(outcome, evaluation)) {
       has_failed_training |= outcome.metrics.empty();
       continue;
     }
-    evaluation.case_errors.push_back(outcome.error);
     ++counted;
     for (std::size_t i = 0; i < objectives + constraints; ++i) {
       worst[i] = std::max(worst[i], outcome.metrics[i]);
@@ -354,6 +365,19 @@ std::optional<double> UserProblem::calc_lower_bound(std::span<const double> /*x*
 
 }  // namespace
 
+void ProblemWarnings::add(const std::string& reason, const std::string& details) {
+  constexpr std::size_t kMostWarnings = 5;
+  const std::lock_guard lock(mutex_);
+  if (told_.size() < kMostWarnings && told_.insert(reason).second) {
+    waiting_.push_back(reason + details);
+  }
+}
+
+std::vector<std::string> ProblemWarnings::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(waiting_, {});
+}
+
 // A program may give any reason, but reasons with these beginnings are made in this folder. The exit
 // code is how a command answers that a design fails.
 bool is_fault_of_program(const CaseOutcome& outcome) {
@@ -371,6 +395,14 @@ std::shared_ptr<const Problem> make_user_problem(UserProgram program) {
 const UserDescription* find_user_description(const Problem& problem) {
   const auto* user = dynamic_cast<const UserProblem*>(&problem);
   return user == nullptr ? nullptr : &user->user_description();
+}
+
+ProblemWarnings* find_warnings(const Problem& problem) {
+  if (const auto* adapter = dynamic_cast<const ProblemAdapter*>(&problem)) {
+    return find_warnings(adapter->adapted());
+  }
+  const auto* user = dynamic_cast<const UserProblem*>(&problem);
+  return user == nullptr ? nullptr : &user->warnings();
 }
 
 void require_server(const Problem& problem) {

@@ -4,14 +4,47 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "base/error.hpp"
 #include "problems/user/case_server.hpp"
 
 namespace armwright {
 
+// A server answered against its contract. This ends the run.
+class BrokenProtocol : public Error {
+  using Error::Error;
+};
+
+// What the user is to hear of failed cases beside their recorded reasons: what the program printed
+// last, and what a command has written in place of a number. Thread-safe.
+class ProblemWarnings {
+ public:
+  // Adds a warning, unless there has been one with the same reason or there have been many.
+  void add(const std::string& reason, const std::string& details);
+  // Returns the warnings that it has not returned yet.
+  std::vector<std::string> take();
+
+ private:
+  std::mutex mutex_;
+  std::set<std::string> told_;
+  std::vector<std::string> waiting_;
+};
+
+// A problem that leaves the simulation to another one.
+class ProblemAdapter : public Problem {
+ public:
+  virtual const Problem& adapted() const = 0;
+};
+
 // Objectives of several cases are combined by their mean or worst value, constraints by their worst
 // value, metrics by their mean. Nothing starts before the first simulation. simulate() throws
-// Error{bad_data} if a server breaks its contract, and Error if none can be started.
+// BrokenProtocol if a server breaks its contract, Error if none can be started, and WorkStopped as
+// check_work_stop() does.
 std::shared_ptr<const Problem> make_user_problem(UserProgram program);
 
 // Returns whether a case failed although its program did not answer that it fails: the program
@@ -20,6 +53,9 @@ bool is_fault_of_program(const CaseOutcome& outcome);
 // Returns the description that the user gave of a problem that make_user_problem() made; null for
 // other problems. Valid as long as the problem.
 const UserDescription* find_user_description(const Problem& problem);
+// Returns the warnings of a problem that make_user_problem() made, or that is an adapter of one; null
+// for other problems. Valid as long as the problem.
+ProblemWarnings* find_warnings(const Problem& problem);
 // Throws Error{usage}, which says what to do, if a problem of make_user_problem() has no server.
 void require_server(const Problem& problem);
 

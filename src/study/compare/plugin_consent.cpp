@@ -19,6 +19,7 @@
 #include "base/text.hpp"
 #include "optimizers/plugins/recorded_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
+#include "process/command_words.hpp"
 
 namespace armwright {
 namespace {
@@ -40,16 +41,14 @@ std::string describe_plugin(const NamedOptimizer& optimizer) {
 
 // Returns the hash of what would run. A file that is missing has no hash.
 std::string calc_plugin_hash(std::span<const NamedOptimizer> optimizers) {
-  constexpr std::size_t kLargestFile_bytes = std::size_t{1} << 30;
   json list = json::array();
   for (const NamedOptimizer& optimizer : optimizers) {
     json files = json::object();
     if (is_plugin(optimizer.name)) {
       for (const std::string& file : list_plugin_files(optimizer.name)) {
         std::error_code ignored;
-        files[file] = std::filesystem::is_regular_file(file, ignored)
-                          ? calc_sha256_hex(read_file(file, kLargestFile_bytes))
-                          : "";
+        files[file] =
+            std::filesystem::is_regular_file(file, ignored) ? calc_program_hash(file) : "";
       }
     }
     list.push_back({{"name", optimizer.name}, {"options", optimizer.options}, {"files", files}});
@@ -144,10 +143,16 @@ std::vector<NamedOptimizer> list_programs(std::span<const StudyProblem> problems
   std::vector<NamedOptimizer> programs;
   for (const StudyProblem& problem : problems) {
     const LoadedProblem& loaded = problem.loaded;
-    if (!loaded.program.empty() && !is_host_name(loaded.program)) {
+    const json resolved = json::parse(loaded.resolved_json);
+    const bool is_command = resolved.value("kind", "") == "command";
+    if (!loaded.program.empty() && (is_command || !is_host_name(loaded.program))) {
       programs.push_back({.name = loaded.program, .is_problem = true});
       for (const auto& [file, hash] : loaded.input_hashes) {
         programs.back().options.push_back(fmt::format("{} {}", file, hash));
+      }
+      if (is_command && resolved.at("command").contains("input")) {  // may be a script
+        programs.back().options.push_back(
+            fmt::format("input {}", calc_sha256_hex(resolved["command"]["input"].dump())));
       }
     }
   }

@@ -20,6 +20,7 @@ enum class ContractOutcome {
 struct ContractFinding {
   ContractOutcome outcome = ContractOutcome::held;
   std::string detail;  // broken: on which problem and how; exempt: why
+  bool ends = false;   // the checks that follow would find the same fault
 };
 
 struct ContractCheck {

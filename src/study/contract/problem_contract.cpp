@@ -49,9 +49,8 @@ ContractFinding check_start(const ProblemTrial& trial) {
   const Specimen specimen(trial);
   const Question question{specimen.get_start(), 0};
   const CaseOutcome outcome = specimen.ask({&question, 1}).front();
-  return make_finding(outcome.status == EvaluationStatus::ok
-                          ? ""
-                          : fmt::format("{}: {}", specimen.describe(question), outcome.reason));
+  return make_finding(
+      outcome.status == EvaluationStatus::ok ? "" : specimen.describe_failure(question, outcome));
 }
 
 // A user's problem may answer that a design cannot be simulated. It must not crash on one.
@@ -66,11 +65,12 @@ ContractFinding check_bounds(const ProblemTrial& trial) {
     if (outcome.status == EvaluationStatus::ok) {
       continue;
     }
-    const std::string what = fmt::format("{}: {}", specimen.describe(corners[i]), outcome.reason);
     if (is_fault_of_program(outcome)) {
-      return make_broken(what);
+      return make_broken(specimen.describe_failure(corners[i], outcome));
     }
-    first = failed++ == 0 ? what : first;
+    if (failed++ == 0) {
+      first = fmt::format("{}: {}", specimen.describe(corners[i]), outcome.reason);
+    }
   }
   ContractFinding finding;
   if (failed > 0) {
@@ -88,8 +88,7 @@ ContractFinding check_finite(const ProblemTrial& trial) {
   const std::vector<CaseOutcome> outcomes = specimen.ask(questions);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (is_fault_of_program(outcomes[i])) {
-      return make_broken(
-          fmt::format("{}: {}", specimen.describe(questions[i]), outcomes[i].reason));
+      return make_broken(specimen.describe_failure(questions[i], outcomes[i]));
     }
   }
   return {};
@@ -268,7 +267,7 @@ ContractFinding check_sets(const ProblemTrial& trial) {
     const CaseJob job{.x = start, .block = &block};
     const CaseOutcome outcome = specimen.problem().simulate({&job, 1}).front();
     if (is_fault_of_program(outcome)) {
-      return make_broken(fmt::format("case 0 of {}: {}", set, outcome.reason));
+      return make_broken(specimen.describe_failure(fmt::format("case 0 of {}", set), outcome));
     }
   }
   return {};
@@ -393,13 +392,20 @@ const std::vector<ProblemCheck>& problem_checks() {
 
 ContractFinding run_problem_check(const ProblemCheck& check, const ProblemTrial& trial) {
   ContractFinding finding;
+  const char* advice = check.advice;
   try {
     finding = check.run(trial);
+  } catch (const BrokenProtocol& error) {
+    finding = make_broken(error.what());
+    finding.ends = true;
+    advice =
+        "correct this answer (docs/problem-protocol.md); the promises that follow are checked "
+        "after that";
   } catch (const std::exception& error) {
     finding = make_broken(error.what());
   }
   if (finding.outcome == ContractOutcome::broken) {
-    finding.detail += fmt::format(". To do: {}", check.advice);
+    finding.detail += fmt::format(". To do: {}", advice);
   }
   return finding;
 }

@@ -30,7 +30,7 @@ struct ProblemCheck {
 const std::vector<ProblemCheck>& problem_checks();
 
 // Runs one check. An exception of the problem counts as `broken`. Adds the advice to the detail of
-// what is broken.
+// what is broken. An answer against the protocol ends the checks (ContractFinding::ends).
 ContractFinding run_problem_check(const ProblemCheck& check, const ProblemTrial& trial);
 
 }  // namespace armwright

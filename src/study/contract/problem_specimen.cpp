@@ -106,6 +106,22 @@ std::string Specimen::describe(const Question& question) const {
                      question.x.size() > kMostShown ? " ..." : "", question.number);
 }
 
+std::string Specimen::describe_failure(const Question& question, const CaseOutcome& outcome) const {
+  return describe_failure(describe(question), outcome);
+}
+
+std::string Specimen::describe_failure(std::string_view what, const CaseOutcome& outcome) const {
+  std::string reason = outcome.reason;
+  if (ProblemWarnings* const warnings = find_warnings(problem())) {
+    for (const std::string& warning : warnings->take()) {
+      if (warning.starts_with(outcome.reason)) {
+        reason = join(split(warning, '\n'), " |");
+      }
+    }
+  }
+  return fmt::format("{}: {}", what, reason);
+}
+
 std::string Specimen::compare(std::span<const Question> questions,
                               std::span<const CaseOutcome> first,
                               std::span<const CaseOutcome> second, std::string_view how) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "problems/config/problem_loader.hpp"
+#include "problems/user/user_problem.hpp"
 #include "study/contract/problem_contract.hpp"
 
 namespace armwright {
@@ -27,7 +28,7 @@ class Specimen {
   const LoadedProblem& loaded() const { return loaded_; }
   const Problem& problem() const { return *loaded_.problem; }
   const ProblemDescription& description() const { return problem().description(); }
-  bool is_user_problem() const { return !loaded_.program.empty(); }
+  bool is_user_problem() const { return find_user_description(problem()) != nullptr; }
 
   // Returns the start and a few designs from all over the box, each on every case.
   std::vector<Question> make_questions() const;
@@ -41,6 +42,9 @@ class Specimen {
 
   // Returns "x=1 kind=round on case 3".
   std::string describe(const Question& question) const;
+  // Returns "QUESTION: why it failed", with what the program printed last, on one line.
+  std::string describe_failure(const Question& question, const CaseOutcome& outcome) const;
+  std::string describe_failure(std::string_view what, const CaseOutcome& outcome) const;
   // Returns the first difference of two answers to the same questions as text; empty if there is
   // none. `how` says how the second answers were asked for.
   std::string compare(std::span<const Question> questions, std::span<const CaseOutcome> first,

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <utility>
 
+#include "process/stop_scope.hpp"
+
 namespace armwright {
 
 CaseBatch::CaseBatch(const Problem& problem, std::span<const std::span<const double>> candidates,
@@ -76,14 +78,27 @@ void CaseExecutor::evaluate(const Problem& problem,
            });
 }
 
+std::optional<std::vector<CaseOutcome>> simulate_until(StopSignal& stop, const Problem& problem,
+                                                       std::span<const CaseJob> jobs) {
+  const StopScope scope(&stop);
+  try {
+    return problem.simulate(jobs);
+  } catch (const WorkStopped&) {
+    return std::nullopt;
+  }
+}
+
 void ThreadExecutor::run(const CaseBatch& batch, StopSignal& stop) {
   const std::size_t pairs = batch.size();
   const std::size_t chunk = calc_chunk(batch.chunk_size(), pairs, pool_.size());
   pool_.run((pairs + chunk - 1) / chunk, [&](std::size_t number) {
-    if (!stop.requested()) {
-      const std::size_t first = number * chunk;
-      const std::size_t count = std::min(chunk, pairs - first);
-      batch.deliver(first, batch.problem().simulate(batch.make_jobs(first, count)));
+    if (stop.requested()) {
+      return;
+    }
+    const std::size_t first = number * chunk;
+    const auto jobs = batch.make_jobs(first, std::min(chunk, pairs - first));
+    if (auto outcomes = simulate_until(stop, batch.problem(), jobs)) {
+      batch.deliver(first, *std::move(outcomes));
     }
   });
 }

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -74,6 +75,11 @@ class CaseBatch {
   BatchSize chunk_size_;
   Receive receive_;
 };
+
+// Simulates jobs. Returns nothing if `stop` has ended the simulation: a user's problem waits no
+// longer for its program. Throws whatever the problem throws.
+std::optional<std::vector<CaseOutcome>> simulate_until(StopSignal& stop, const Problem& problem,
+                                                       std::span<const CaseJob> jobs);
 
 // An executor simulates batches on threads of this process, or also in other processes. Its
 // functions must not be called from a callback. Only a Coordinator may be used by several threads

@@ -181,12 +181,12 @@ void Coordinator::simulate_piece(Lock& lock, const PiecePointer& piece) {
   const auto until = busy_until_.insert(
       busy_until_.end(), Clock::now() + std::chrono::duration_cast<Clock::duration>(expected));
   lock.unlock();
-  std::vector<CaseOutcome> outcomes;
+  std::optional<std::vector<CaseOutcome>> outcomes;
   std::exception_ptr failure;
   const Clock::time_point start = Clock::now();
   try {
     const auto jobs = batch.cases->make_jobs(piece->first, piece->count);
-    outcomes = batch.cases->problem().simulate(jobs);
+    outcomes = simulate_until(*batch.stop, batch.cases->problem(), jobs);
   } catch (...) {
     failure = std::current_exception();
   }
@@ -194,9 +194,11 @@ void Coordinator::simulate_piece(Lock& lock, const PiecePointer& piece) {
   lock.lock();
   if (failure) {
     batch.fail(failure);
-  } else {
+  } else if (outcomes) {
     batch.cost->add(taken.count(), piece->count);
-    deliver(lock, piece, std::move(outcomes));
+    deliver(lock, piece, *std::move(outcomes));
+  } else {
+    batch.closed = true;
   }
   busy_until_.erase(until);
   --batch.active;

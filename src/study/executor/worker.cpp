@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -63,6 +64,7 @@ Worker::~Worker() {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
+  stop_.request(StopReason::terminated);
   has_work_.notify_all();
   for (std::thread& thread : threads_) {
     thread.join();
@@ -108,6 +110,7 @@ bool Worker::handle_message(const std::string& message, End& end) {
       const std::lock_guard lock(mutex_);
       stopping_ = true;
       waiting_.clear();
+      stop_.request(StopReason::terminated);
       transport_.send(0, make_rank_message(RankMessage::bye));
       return false;
     }
@@ -192,18 +195,22 @@ void Worker::simulate_jobs(std::unique_lock<std::mutex>& lock,
     waiting_.pop_front();
   }
   lock.unlock();
-  std::vector<CaseOutcome> outcomes;
+  std::optional<std::vector<CaseOutcome>> outcomes;
   std::string failure;
   const WorkClock::time_point start = WorkClock::now();
   try {
-    outcomes = chunk->problem->simulate(std::span(chunk->received.jobs).subspan(first, count));
+    outcomes = simulate_until(stop_, *chunk->problem,
+                              std::span(chunk->received.jobs).subspan(first, count));
   } catch (const std::exception& error) {
     failure = error.what();
   }
   const std::chrono::duration<double> taken = WorkClock::now() - start;
   lock.lock();
+  if (failure.empty() && !outcomes) {
+    return;
+  }
   if (failure.empty()) {
-    std::ranges::move(outcomes, chunk->outcomes.begin() + static_cast<std::ptrdiff_t>(first));
+    std::ranges::move(*outcomes, chunk->outcomes.begin() + static_cast<std::ptrdiff_t>(first));
   } else {
     chunk->failure = failure;
   }

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/stop_signal.hpp"
 #include "process/process_watch.hpp"
 #include "study/executor/case_packets.hpp"
 #include "study/executor/message_transport.hpp"
@@ -26,7 +27,7 @@ class Worker {
   // treats it as dead after `silence_s` without one.
   Worker(MessageTransport& transport, std::vector<const Problem*> problems,
          WorkerIntroduction introduction, double silence_s = 120);
-  ~Worker();  // waits for the simulations that have begun
+  ~Worker();  // stops the simulations that have begun, and waits for those that cannot be stopped
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
@@ -53,6 +54,7 @@ class Worker {
   const std::vector<const Problem*> problems_;
   const double longest_silence_s_;
   WakingTime silence_;
+  StopSignal stop_;  // ends simulations whose results the coordinator no longer needs
 
   std::mutex mutex_;  // guards all members below
   std::condition_variable has_work_;

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "problems/user/user_problem.hpp"
 #include "process/output_log.hpp"
+#include "process/stop_scope.hpp"
 #include "study/journal/journal_format.hpp"
 #include "study/run/run_evaluator.hpp"
 #include "study/run/run_folder.hpp"
@@ -209,13 +210,20 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     add_time();
     return std::nullopt;
   }
+  evaluator.tell_warnings();
   // A failed run gets no end record, so that it goes on from the failure when it is started again.
   if (!recorded.ended && result.failure.empty()) {
     journal.append(EndRecord{result.end_reason, result.counts.evaluations});
   }
   journal.close();
-  write_derived_files(folder, plan, result, read_journal(folder.journal()), request.derived,
-                      add_time);
+  try {
+    const StopScope scope(&stop);
+    write_derived_files(folder, plan, result, read_journal(folder.journal()), request.derived,
+                        add_time);
+  } catch (const WorkStopped&) {  // while a user's problem recorded the winner
+    add_time();
+    return std::nullopt;
+  }
   return result;
 }
 

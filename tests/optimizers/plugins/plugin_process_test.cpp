@@ -371,10 +371,10 @@ TEST(PluginMessages, AScoreSaysItsStatusAsTheProtocolHasIt) {
 }
 
 TEST(SplitCommand, FollowsTheShell) {
-  EXPECT_THAT(split_command("a  b\tc "), ElementsAre("a", "b", "c"));
-  EXPECT_THAT(split_command(R"(a 'b "c\' "d '\"e" f\ g)"),
+  EXPECT_THAT(split_command("a  b\tc ", "optimizer"), ElementsAre("a", "b", "c"));
+  EXPECT_THAT(split_command(R"(a 'b "c\' "d '\"e" f\ g)", "optimizer"),
               ElementsAre("a", "b \"c\\", "d '\"e", "f g"));
-  EXPECT_THAT(split_command(R"(a"b c"'d' "" '$HOME' "\n")"),
+  EXPECT_THAT(split_command(R"(a"b c"'d' "" '$HOME' "\n")", "optimizer"),
               ElementsAre("ab cd", "", "$HOME", "\\n"));
 }
 

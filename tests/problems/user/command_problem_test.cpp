@@ -12,17 +12,20 @@
 #include "base/expect_error.hpp"
 #include "problems/changed_text.hpp"
 #include "problems/problem_folder.hpp"
+#include "problems/user/user_problem.hpp"
 #include "process/process_watch.hpp"
 #include "wait_until.hpp"
 
 namespace armwright {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
+using testing::StartsWith;
 
 // A problem whose command is a script of sh, with one variable of each type.
 std::string make_problem(const std::string& script, const std::string& objective,
@@ -128,23 +131,37 @@ TEST(CommandProblem, FailuresHaveReasonsThatAreTheSameEachTime) {
   };
   EXPECT_EQ(reason("exit 3\n", result), "the command ended with exit code 3");
   EXPECT_EQ(reason("true\n", result), "the command left no result: it wrote no file 'out.json'");
-  EXPECT_THAT(reason("echo '{{' > out.json\n", result), HasSubstr("'out.json' is not JSON ("));
+  EXPECT_EQ(reason("echo '{{' > out.json\n", result),
+            "the command left no result: 'out.json' is not JSON");
   EXPECT_EQ(reason("echo '{{\"g\":1}' > out.json\n", result),
             "the command left no result: 'out.json' has nothing at '/f'");
   EXPECT_EQ(reason("echo '{{\"f\":\"a\"}' > out.json\n", result),
-            "the command left no result: 'out.json' has '\"a\"' at '/f', not a finite number");
+            "the command left no result: 'out.json' has no finite number at '/f'");
   EXPECT_EQ(reason("mkdir out.json\n", result),
             "the command left no result: 'out.json' is no readable file of at most 64 MiB");
   EXPECT_EQ(reason("printf 'a,b\\n1,nan\\n'\n", "column = \"b\"\n"),
-            "the command left no result: column 'b' of its standard output in row 2 is 'nan', not "
-            "a finite number");
+            "the command left no result: column 'b' of its standard output is not a finite number");
   EXPECT_EQ(reason("printf 'a,b\\n1,2\\n'\n", "column = \"c\"\n"),
-            "the command left no result: its standard output has no column 'c'; its first line is "
-            "'a,b'");
+            "the command left no result: its standard output has no column 'c'");
   EXPECT_EQ(reason("printf 'a,b\\n'\n", "column = \"b\"\n"),
             "the command left no result: its standard output has no row with the column 'b'");
   EXPECT_EQ(reason("echo none\n", "regex = 'e: (.*)'\n"),
             "the command left no result: its standard output has no line that matches 'e: (.*)'");
+}
+
+TEST(CommandProblem, AWarningHasWhatTheCommandWroteAndTheRecordedReasonHasNot) {
+  const ProblemFolder folder;
+  folder.write("p.toml", make_problem("echo \"process $$: no mesh\" >&2; echo f = $$-{x}\n",
+                                      "regex = 'f = (.*)'\n"));
+  const LoadedProblem loaded = folder.load("p.toml");
+  const std::string reason =
+      "the command left no result: the match of 'f = (.*)' in its standard output is not a finite "
+      "number";
+  EXPECT_EQ(evaluate(loaded, {0.25, 0, 0}).reason, reason);
+  const auto told = find_warnings(*loaded.problem)->take();
+  ASSERT_THAT(told, SizeIs(1));
+  EXPECT_THAT(told.front(),
+              AllOf(StartsWith(reason + "; it is '"), HasSubstr("-0.25'"), HasSubstr(": no mesh")));
 }
 
 TEST(CommandProblem, ATimeLimitKillsWhatTheCommandStarted) {

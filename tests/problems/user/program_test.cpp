@@ -10,6 +10,7 @@
 #include "base/expect_error.hpp"
 #include "base/temporary_folder.hpp"
 #include "problems/config/problem_loader.hpp"
+#include "problems/user/user_problem.hpp"
 #include "wait_until.hpp"
 
 namespace armwright {
@@ -185,6 +186,38 @@ TEST(ProgramProblem, ACaseThatTakesTooLongOrTooMuchMemoryIsAnEvaluationToo) {
   EXPECT_EQ(evaluate(load("deaf", {"program.time_limit_s=1"}), kGood).status, timed_out);
 }
 
+TEST(ProgramProblem, TheMemoryLimitCountsWhatTheProgramHasStarted) {
+  const LoadedProblem greedy = load("child-memory", {"program.memory_mib=100"});
+  EXPECT_EQ(evaluate(greedy, kBad).reason,
+            "the program took more than 100 MiB of memory (program.memory_mib)");
+  EXPECT_EQ(evaluate(greedy, kGood).objectives, std::vector<double>{14});
+}
+
+TEST(ProgramProblem, AWarningHasTheLastWordsOfACrashAndTheRecordedReasonHasNot) {
+  const LoadedProblem loaded = load("last-words");
+  ProblemWarnings& warnings = *find_warnings(*loaded.problem);
+  const std::string reason = "the program ended with exit code 3";
+  EXPECT_EQ(evaluate(loaded, kBad).reason, reason);
+  EXPECT_EQ(evaluate(loaded, kBad).reason, reason);
+  const auto told = warnings.take();
+  ASSERT_EQ(told.size(), 1U) << "each reason is told once";
+  EXPECT_THAT(told.front(), AllOf(testing::StartsWith(reason + "; the last that it printed:"),
+                                  HasSubstr("no mesh")));
+  EXPECT_THAT(warnings.take(), IsEmpty());
+}
+
+TEST(ProgramProblem, TooFewAnswersToAQuestionAreToldAndAskedForAgain) {
+  const LoadedProblem loaded = load("too-few-together", {"program.time_limit_s=1"});
+  const std::vector<CaseJob> jobs = {{.x = kGood, .block = &kFirstCase},
+                                     {.x = kBad, .block = &kFirstCase}};
+  const auto outcomes = loaded.problem->simulate(jobs);
+  EXPECT_EQ(outcomes.at(0).error, 14);
+  EXPECT_EQ(outcomes.at(1).error, 4.5 * 4.5 + 4);
+  EXPECT_THAT(find_warnings(*loaded.problem)->take(),
+              ElementsAre("the program sent 1 of 2 answers and then has been silent for 1 s "
+                          "(program.time_limit_s); each case is asked for again, alone"));
+}
+
 TEST(ProgramProblem, WhatItStartedIsKilledWithIt) {
   const TemporaryFolder folder;
   const auto file = folder / "pid";
@@ -246,6 +279,8 @@ TEST(ProgramProblem, ABadDescriptionIsRefusedWithTheFieldAndTheValue) {
                     HasSubstr("no licence")));
   EXPECT_THAT(usage_error_of([] { load_problem("exec:no-such-program-here a"); }),
               HasSubstr("'no-such-program-here'"));
+  EXPECT_THAT(usage_error_of([] { load_problem("exec:python3 'a"); }),
+              HasSubstr("problem 'exec:python3 'a': a quote (') is not closed"));
 }
 
 TEST(ProgramProblem, ADescriptionThatChangesIsRefusedWithTheDifference) {

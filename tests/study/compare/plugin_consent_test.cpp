@@ -129,6 +129,26 @@ TEST_F(PluginConsent, AnOptionThatWritesAFileNeedsConsent) {
               HasSubstr("nlopt:cobyla, which writes to a file (log="));
 }
 
+TEST_F(PluginConsent, ACommandIsKnownByItsWordsAndByTheInputFilesThatItsProblemWrites) {
+  const auto list = [&](const std::string& script) {
+    const auto file = temporary_ / "p.toml";
+    write_file_atomically(file,
+                          "kind = \"command\"\ncommand.run = \"host:sh script\"\n"
+                          "[[command.input]]\nfile = \"script\"\ntext = '" +
+                              script +
+                              "'\n[[variable]]\nname = \"x\"\nlower = 0\n"
+                              "upper = 1\n[[objective]]\nname = \"f\"\n"
+                              "exit_code = true\n");
+    StudyProblem problem;
+    problem.loaded = load_problem(file.string());
+    return list_programs({&problem, 1});
+  };
+  const auto first = list("exit 3");
+  ASSERT_EQ(first.size(), 1U) << "the name of a host program is no excuse for a command";
+  EXPECT_EQ(first[0].options, list("exit 3")[0].options);
+  EXPECT_NE(first[0].options, list("rm -r ~")[0].options);
+}
+
 TEST_F(PluginConsent, TheMemoryIsPrivateAndMayBeMissing) {
   plant_program();
   load(true);

@@ -1,0 +1,28 @@
+#include "process/stop_scope.hpp"
+
+#include <utility>
+
+namespace armwright {
+namespace {
+
+thread_local StopSignal* t_stop = nullptr;
+
+}  // namespace
+
+StopScope::StopScope(StopSignal* stop) : before_(std::exchange(t_stop, stop)) {}
+
+StopScope::~StopScope() {
+  t_stop = before_;
+}
+
+StopSignal* get_work_stop() {
+  return t_stop;
+}
+
+void check_work_stop() {
+  if (t_stop != nullptr && t_stop->requested() && t_stop->reason() != StopReason::time_limit) {
+    throw WorkStopped{};
+  }
+}
+
+}  // namespace armwright
