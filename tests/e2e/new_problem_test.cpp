@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
@@ -69,6 +70,38 @@ TEST_F(CliNewProblem, CheckProblemSaysWhatIsWrongWithADescription) {
   EXPECT_EQ(checked.exit_code, 3);
   EXPECT_THAT(checked.out, HasSubstr("BROKEN"));
   EXPECT_THAT(checked.out, HasSubstr("\"protocol\""));
+}
+
+// Returns the lines of an example that are neither blank nor only a comment. The build file and the
+// model of MuJoCo do not count.
+int count_lines_of_code(const std::filesystem::path& example) {
+  int lines = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(example)) {
+    const std::string suffix = entry.path().extension();
+    if (suffix == ".txt" || suffix == ".xml") {
+      continue;
+    }
+    const std::string comment = suffix == ".cir"                       ? "*"
+                                : suffix == ".py" || suffix == ".toml" ? "#"
+                                                                       : "//";
+    std::istringstream text(read_text(entry.path()));
+    for (std::string line; std::getline(text, line);) {
+      const std::size_t first = line.find_first_not_of(" \t");
+      lines += first != std::string::npos && !line.substr(first).starts_with(comment) ? 1 : 0;
+    }
+  }
+  return lines;
+}
+
+TEST_F(CliNewProblem, EveryExampleHasLessThan60LinesOfCode) {
+  int examples = 0;
+  for (const auto& example : std::filesystem::directory_iterator(kExamples)) {
+    const int lines = count_lines_of_code(example.path());
+    EXPECT_GT(lines, 10) << example.path();
+    EXPECT_LT(lines, 60) << example.path();
+    ++examples;
+  }
+  EXPECT_EQ(examples, 4);
 }
 
 TEST_F(CliNewProblem, TheExampleOfAMotorIsTuned) {
