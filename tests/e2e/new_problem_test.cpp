@@ -116,10 +116,11 @@ TEST_F(CliNewProblem, TheExampleOfAFilterIsTuned) {
   if (std::system("command -v ngspice >/dev/null") != 0) {
     GTEST_SKIP() << "there is no ngspice (Debian's package ngspice)";
   }
-  // The start, all parts 10k and 10n, has 4.96 dB, and 200 random designs have 1.22 dB.
+  // The transfer function of all 130 321 designs gives 0.2323 dB for the best one and 0.2415 dB for
+  // the fifth best, which this run finds. The start, all parts 10k and 10n, has 4.96 dB.
   const double rms_db = optimize((kExamples / "filter/filter.toml").string(), "ga", 140);
-  EXPECT_GT(rms_db, 0);
-  EXPECT_LT(rms_db, 0.6);
+  EXPECT_GT(rms_db, 0.2322);
+  EXPECT_LT(rms_db, 0.2416);
 }
 
 TEST_F(CliNewProblem, TheExampleOfACartWithAPoleIsTuned) {
