@@ -72,9 +72,10 @@ TEST_F(CliUserProblem, AProgramThatIsChangedSinceTheRunBeganIsRefusedWithTheDiff
   edit_program(R"("lower": -5)", R"("lower": -6)");
   const Outcome changed = run(words);
   EXPECT_EQ(changed.exit_code, 2);
-  EXPECT_THAT(changed.err,
-              AllOf(HasSubstr("another configuration"),
-                    HasSubstr("the input 'mine.py' has changed"), HasSubstr("description")));
+  EXPECT_THAT(
+      changed.err,
+      AllOf(HasSubstr("another configuration"), HasSubstr("the input 'mine.py' has changed"),
+            HasSubstr("program.description.variables.0.lower: recorded -5.0, now -6.0")));
 }
 
 TEST_F(CliUserProblem, AFaultyAnswerEndsTheRunAndTheMendedProgramGoesOnInAnotherFolder) {
