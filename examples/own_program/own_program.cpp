@@ -14,12 +14,11 @@ int main(int argc, char** argv) try {
                 .folder = argc > 1 ? argv[1] : "results/speed-control",
                 .jobs = argc > 3 ? static_cast<unsigned>(std::atoi(argv[3])) : 1,
                 .on_message = [](const std::string& message) { std::cerr << message << '\n'; }});
-  std::cout << outcome.folder << ": " << outcome.end_reason << '\n';
-  if (!outcome.x.empty()) {
-    std::cout << "kp " << outcome.x[0] << ", ki " << outcome.x[1] << ", filter " << outcome.x[2]
-              << ": ITAE " << outcome.objectives[0] << " rad s, overshoot "
-              << outcome.constraints[0] << " rad/s\n";
+  std::cout << outcome.folder << ": " << outcome.end_reason << "; kp, ki and filter:";
+  for (const double value : outcome.x) {
+    std::cout << ' ' << value;
   }
+  std::cout << '\n';
 } catch (const armwright::run::RunError& error) {
   std::cerr << "error: " << error.what() << '\n';
   return error.code();

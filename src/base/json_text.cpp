@@ -20,6 +20,19 @@ std::string cut(std::string_view text) {
   return sanitize(text.substr(0, kLongest_bytes)) + (text.size() > kLongest_bytes ? "..." : "");
 }
 
+// Returns whether a value is a text that is a JSON object, such as the description of a problem.
+bool has_object(const json& value) {
+  if (!value.is_string() || !value.get_ref<const std::string&>().starts_with('{')) {
+    return false;
+  }
+  try {
+    check_json_depth(value.get_ref<const std::string&>(), "");
+    return json::accept(value.get_ref<const std::string&>());
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 // Brackets within strings do not count. The depth is exact up to the first syntax error; the parser
@@ -86,6 +99,16 @@ std::vector<std::string> describe_differences(const std::string& recorded_json,
     if (!now.contains(key)) {
       differences.push_back(fmt::format("{}: recorded {}, now absent", name(key), show(value)));
     } else if (now[key] != value) {
+      if (has_object(value) && has_object(now[key])) {
+        const auto inner =
+            describe_differences(value.get<std::string>(), now[key].get<std::string>());
+        for (const std::string& one : inner) {
+          differences.push_back(fmt::format("{}.{}", name(key), one));
+        }
+        if (!inner.empty()) {
+          continue;
+        }
+      }
       differences.push_back(
           fmt::format("{}: recorded {}, now {}", name(key), show(value), show(now[key])));
     }

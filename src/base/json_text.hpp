@@ -25,7 +25,7 @@ std::string read_json_file(const std::filesystem::path& file, std::size_t limit_
 std::string describe_json_error(std::string_view message);
 
 // Returns one line per difference: "run.seed: recorded 1, now 2". Empty if both texts have the same
-// values. Both must be valid JSON.
+// values. Both must be valid JSON. Texts within them that are JSON objects are compared likewise.
 std::vector<std::string> describe_differences(const std::string& recorded_json,
                                               const std::string& now_json);
 

@@ -46,5 +46,14 @@ TEST(Differences, NameKeysAsTheyAre) {
               testing::ElementsAre("inputs../p~8: recorded 1, now 3"));
 }
 
+TEST(Differences, ArePutIntoTextsThatAreObjects) {
+  EXPECT_THAT(
+      describe_differences(R"({"text": "{\"a\": [1, 2], \"b\": 3}", "more": "{"})",
+                           R"({"text": "{\"a\": [1, 7], \"b\": 3}", "more": "[]"})"),
+      testing::ElementsAre(R"(more: recorded "{", now "[]")", "text.a.1: recorded 2, now 7"));
+  EXPECT_THAT(describe_differences(R"({"text": "{}"})", R"({"text": "{ }"})"),
+              testing::ElementsAre(R"(text: recorded "{}", now "{ }")"));
+}
+
 }  // namespace
 }  // namespace armwright

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
@@ -174,6 +175,51 @@ TEST_F(CliAskTell, ACobylaRunHasOnePointPerAsk) {
   }
   EXPECT_LE(points, 15);
   EXPECT_TRUE(asked.contains("winner"));
+}
+
+// Points that an optimizer recommends without an evaluation are judged by optimize only. With these
+// budgets, the winners are evaluated points.
+TEST_F(CliAskTell, ByHandARunEndsWithTheResultOfOptimize) {
+  const std::string problem = "exec:python3 " ARMWRIGHT_TEST_PLUGINS_SOURCE "/problem.py";
+  const auto read_evaluated = [&](const std::string& run_folder) {
+    const json result = json::parse(read_text(folder_ / run_folder / "result.json"));
+    json evaluated = json::array();
+    for (const json& candidate : result.at("candidates")) {
+      if (!candidate.contains("recommended")) {
+        evaluated.push_back(candidate);
+      }
+    }
+    return json{{"counts", result.at("counts")},
+                {"end", result.at("end_reason")},
+                {"test", result.at("winner").at("test")},
+                {"candidates", evaluated}};
+  };
+  for (const auto& [optimizer, budget] : {std::pair{"ga", "75"}, {"cmaes", "90"}, {"lhs", "30"}}) {
+    std::vector<std::string> words = {problem, "--optimizer", optimizer, "--budget",
+                                      budget,  "--seed",      "7"};
+    std::vector<std::string> optimize = {"optimize", "--quiet", "--out", "whole"};
+    optimize.insert(optimize.end(), words.begin(), words.end());
+    ASSERT_EQ(run(optimize).exit_code, 0) << optimizer;
+    words.insert(words.begin(), "--problem");
+    json asked = ask(words);
+    for (; asked.contains("points"); asked = ask()) {
+      std::string text;
+      for (const json& point : asked.at("points")) {
+        const json& x = point.at("x");
+        const double f = x.at("x").get<double>() * x.at("x").get<double>() +
+                         x.at("n").get<double>() * x.at("n").get<double>() +
+                         (x.at("word") == "dear" ? 1 : 0);
+        text += json{{"id", point.at("id")}, {"objectives", {f}}}.dump() + "\n";
+      }
+      ASSERT_EQ(tell(text).exit_code, 0) << optimizer;
+    }
+    EXPECT_EQ(read_evaluated("run"), read_evaluated("whole")) << optimizer;
+    EXPECT_EQ(read_text(folder_ / "run/convergence.csv"),
+              read_text(folder_ / "whole/convergence.csv"))
+        << optimizer;
+    std::filesystem::remove_all(folder_ / "run");
+    std::filesystem::remove_all(folder_ / "whole");
+  }
 }
 
 TEST_F(CliAskTell, OptimizeCompareAndEvaluateSayThatNobodyComputesAnExternalProblem) {

@@ -212,7 +212,7 @@ TEST_F(Deliverables, SayWhatToGiveInstead) {
     expect_refused({"export", "unfinished", "--format", format}, 2,
                    HasSubstr("has not come to its end; start it again"));
     expect_refused({"export", "function", "--format", format}, 2,
-                   AllOf(HasSubstr("sphere, which is a function"), HasSubstr("csv, ioh, coco")));
+                   AllOf(HasSubstr("sphere, which has no arm"), HasSubstr("csv, ioh, coco")));
     expect_refused({"export", "none", "--format", format}, 2,
                    AllOf(HasSubstr("found no design"), HasSubstr("larger budget")));
     expect_refused({"export", "nowhere", "--format", format}, 2,

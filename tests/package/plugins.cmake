@@ -1,5 +1,6 @@
-# Run by ctest: what a user's own optimizers and programs need, from an installed package alone. The templates' own test.sh builds each, has
-# check-plugin look at it and runs it; the examples in C and C++ likewise. Every step that fails ends the test with its name and what it printed.
+# Run by ctest: what a user's own optimizers, problems and programs need, from an installed package alone. The templates' own test.sh builds each,
+# has check-plugin or check-problem look at it and runs it; the examples in C and C++ likewise. Every step that fails ends the test with its name
+# and what it printed.
 function(step name)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${WORK_DIR} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status STREQUAL "0")
@@ -18,13 +19,15 @@ set(env ${CMAKE_COMMAND} -E env CMAKE_PREFIX_PATH=${prefix} ARMWRIGHT=${program}
         CXX=${CXX_COMPILER} "CFLAGS=${C_FLAGS} -Wall -Wextra -Wpedantic -Werror" "CXXFLAGS=${CXX_FLAGS} -Wall -Wextra -Wpedantic -Werror")
 step("install" ${CMAKE_COMMAND} --install ${BUILD_DIR} --config ${CONFIG} --prefix ${prefix})
 
-foreach(language IN ITEMS c++ c)
-  string(REPLACE "c++" "cpp" name mine_${language})
-  step("begin ${name}" ${program} new-plugin --language ${language} ${name})
-  step("test.sh of ${name}" ${env} ./${name}/test.sh)
-  if(NOT output MATCHES "It keeps every promise")
-    message(FATAL_ERROR "test.sh of ${name} printed\n${output}")
-  endif()
+foreach(kind IN ITEMS plugin problem)
+  foreach(language IN ITEMS c++ c)
+    string(REPLACE "c++" "cpp" name ${kind}_${language})
+    step("begin ${name}" ${program} new-${kind} --language ${language} ${name})
+    step("test.sh of ${name}" ${env} ./${name}/test.sh)
+    if(NOT output MATCHES "It keeps every promise")
+      message(FATAL_ERROR "test.sh of ${name} printed\n${output}")
+    endif()
+  endforeach()
 endforeach()
 # A process is started for each of check-plugin's hundreds of runs, which would take most of this test's time: it is run only.
 step("begin mine_python" ${program} new-plugin --language python mine_python)

@@ -58,7 +58,7 @@ void check_name(const std::string& name) {
   // Names of targets that CMake reserves, and the build folder.
   const std::vector<std::string> reserved = {"all",  "build",   "clean",   "edit_cache",
                                              "help", "install", "package", "rebuild_cache",
-                                             "test", "plugin"};
+                                             "test", "plugin",  "m"};
   const auto shipped = optimizer_names();
   if (std::ranges::count(reserved, name) + std::ranges::count(shipped, name) > 0) {
     throw Error(ErrorKind::usage,

@@ -1,36 +1,25 @@
 #include "cli/manual/plugin_templates.hpp"
 
 #include <cctype>
+#include <utility>
 
 namespace armwright {
 
-const char* const kCmakeCpp = R"raw(cmake_minimum_required(VERSION 3.25)
-project(@NAME@ LANGUAGES CXX)
+namespace {
+
+// CMakeLists.txt of a library that needs only headers of armwright.
+constexpr const char* kCmake = R"raw(cmake_minimum_required(VERSION 3.25)
+project(@NAME@ LANGUAGES @COMPILER@)
 
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 find_package(armwright REQUIRED COMPONENTS plugin)
 
-add_library(@NAME@ MODULE @NAME@.cpp)
-target_compile_features(@NAME@ PRIVATE cxx_std_20)
-target_link_libraries(@NAME@ PRIVATE armwright::plugin)
-)raw";
-
-const char* const kCmakeC = R"raw(cmake_minimum_required(VERSION 3.25)
-project(@NAME@ LANGUAGES C)
-
-if(NOT CMAKE_BUILD_TYPE)
-  set(CMAKE_BUILD_TYPE Release)
-endif()
-find_package(armwright REQUIRED COMPONENTS plugin)
-
-add_library(@NAME@ MODULE @NAME@.c)
-set_target_properties(@NAME@ PROPERTIES C_STANDARD 99)
+add_library(@NAME@ MODULE @SOURCE@)
+target_compile_features(@NAME@ PRIVATE @STANDARD@)
 target_link_libraries(@NAME@ PRIVATE armwright::plugin m)
 )raw";
-
-namespace {
 
 // The same optimizer in each language.
 
@@ -276,9 +265,9 @@ trap 'rm -rf "$results"' EXIT
 )raw";
 
 const TemplateLanguage kPluginLanguages[] = {
-    {"c++", ".cpp", kCppPlugin, kCmakeCpp, "./build/lib@NAME@.so", nullptr},
-    {"c", ".c", kCPlugin, kCmakeC, "./build/lib@NAME@.so", nullptr},
-    {"python", ".py", kPythonPlugin, nullptr, "exec:python3 @NAME@.py", nullptr},
+    {"c++", ".cpp", kCppPlugin, "CXX", "cxx_std_20", "./build/lib@NAME@.so", nullptr},
+    {"c", ".c", kCPlugin, "C", "c_std_99", "./build/lib@NAME@.so", nullptr},
+    {"python", ".py", kPythonPlugin, nullptr, nullptr, "exec:python3 @NAME@.py", nullptr},
 };
 
 std::string to_pascal_case(std::string_view name) {
@@ -330,13 +319,15 @@ std::vector<PluginFile> make_files(const TemplateKind& kind, std::string_view la
       text = replace_all(text, "@PLUGIN@", language.plugin);
       text = replace_all(text, "@SOURCE@", source);
       text = replace_all(text, "@LANGUAGE@", language.name);
-      text = replace_all(text, "@STEPS@ ", language.cmake == nullptr ? "" : "builds it, ");
+      text = replace_all(text, "@STEPS@ ", language.compiler == nullptr ? "" : "builds it, ");
       text = replace_all(text, "@CLASS@", to_pascal_case(name));
       return replace_all(text, "@NAME@", name);
     };
     files.push_back({source, fill(language.source)});
-    if (language.cmake != nullptr) {
-      files.push_back({"CMakeLists.txt", fill(language.cmake)});
+    if (language.compiler != nullptr) {
+      std::string cmake = replace_all(kCmake, "@COMPILER@", language.compiler);
+      cmake = replace_all(std::move(cmake), "@STANDARD@", language.standard);
+      files.push_back({"CMakeLists.txt", fill(std::move(cmake))});
     }
     if (language.problem_file != nullptr) {
       files.push_back({std::string(name) + ".toml", fill(language.problem_file)});
@@ -344,7 +335,7 @@ std::vector<PluginFile> make_files(const TemplateKind& kind, std::string_view la
     files.push_back({"README.md", fill(kind.readme)});
     files.push_back({"test.sh",
                      fill(std::string(kind.test_begin) +
-                          (language.cmake == nullptr ? "" : kTestBuild) + kind.test_end),
+                          (language.compiler == nullptr ? "" : kTestBuild) + kind.test_end),
                      true});
   }
   return files;

@@ -16,7 +16,8 @@ struct TemplateLanguage {
   const char* name;
   const char* suffix;
   const char* source;
-  const char* cmake;         // nullptr if there is nothing to build
+  const char* compiler;      // as CMake names it; nullptr if there is nothing to build
+  const char* standard;      // the feature of CMake for it
   const char* plugin;        // how the command line names the plugin in its folder
   const char* problem_file;  // nullptr if there is none
 };
@@ -27,11 +28,6 @@ struct TemplateKind {
   const char* test_begin;  // of test.sh, before the steps that build the plugin
   const char* test_end;
 };
-
-// CMakeLists.txt of a library in C++ or C that needs only headers of armwright. They are set before
-// any other object of the program, because they are constants.
-extern const char* const kCmakeCpp;
-extern const char* const kCmakeC;
 
 extern const TemplateKind kPluginTemplates;   // optimizers
 extern const TemplateKind kProblemTemplates;  // problems

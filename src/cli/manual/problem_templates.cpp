@@ -257,10 +257,10 @@ trap 'rm -rf "$results"' EXIT
 )raw";
 
 const TemplateLanguage kProblemLanguages[] = {
-    {"python", ".py", kPythonProblem, nullptr, "exec:python3 @NAME@.py", nullptr},
-    {"c++", ".cpp", kCppProblem, kCmakeCpp, "./build/lib@NAME@.so", nullptr},
-    {"c", ".c", kCProblem, kCmakeC, "./build/lib@NAME@.so", nullptr},
-    {"command", ".awk", kAwkModel, nullptr, "./@NAME@.toml", kCommandProblem},
+    {"python", ".py", kPythonProblem, nullptr, nullptr, "exec:python3 @NAME@.py", nullptr},
+    {"c++", ".cpp", kCppProblem, "CXX", "cxx_std_20", "./build/lib@NAME@.so", nullptr},
+    {"c", ".c", kCProblem, "C", "c_std_99", "./build/lib@NAME@.so", nullptr},
+    {"command", ".awk", kAwkModel, nullptr, nullptr, "./@NAME@.toml", kCommandProblem},
 };
 
 }  // namespace

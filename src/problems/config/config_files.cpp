@@ -43,6 +43,9 @@ std::string describe_missing(std::string_view kind, const std::filesystem::path&
                 ? " in the current folder"
                 : fmt::format(" in {} or in the current folder", sanitize(beside.string()));
   }
+  if (kind == "problems" && name.find(' ') != std::string::npos) {
+    return fmt::format("{}; the name of a program begins with exec:, as in 'exec:{}'", text, name);
+  }
   if (!path.has_parent_path()) {
     text += fmt::format(", and no shipped {} has that name", get_singular(kind));
     const auto nearest = find_nearest(path.stem().string(), list_configs(kind));

@@ -9,6 +9,7 @@
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
+#include "problems/config/values_file.hpp"
 
 namespace armwright {
 namespace {
@@ -188,6 +189,16 @@ DesignFile read_design(const std::filesystem::path& path) {
   return file;
 }
 
+// Returns whether the file is the winner of a problem without an arm.
+bool is_values_file(const std::filesystem::path& path) {
+  try {
+    load_values(path);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 DesignFile load_design(std::string_view name_or_path) {
@@ -196,6 +207,13 @@ DesignFile load_design(std::string_view name_or_path) {
   try {
     return read_design(path);
   } catch (const Error& error) {
+    if (is_values_file(path)) {
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("{} has the variables of a problem without an arm, so it is no "
+                              "design of an arm; 'armwright evaluate FILE --problem PROBLEM' "
+                              "evaluates it on that problem",
+                              sanitize(path.string())));
+    }
     // A design is an input like a robot, not a part of the configuration.
     throw Error(error.kind() == ErrorKind::usage ? ErrorKind::bad_data : error.kind(),
                 error.what());

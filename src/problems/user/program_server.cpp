@@ -40,6 +40,9 @@ UserDescription ask_description(LineProcess& child, const OutputLog& log, const 
     return read_user_description(read_message(line.value()));
   } catch (const ProtocolError& error) {
     fault = error.what();
+  } catch (const LineProcessSilence& error) {
+    fault = fmt::format("{} before it described itself. It must flush its output after each line",
+                        error.what());
   } catch (const LineProcessFailure& error) {
     fault = fmt::format("{} before it described itself", error.what());
   }

@@ -456,6 +456,11 @@ ProblemDescription make_description(const UserDescription& description) {
   }
   if (made.limits.size() < made.constraints.size()) {
     made.limits.clear();  // all constraints have one or none has
+    for (std::size_t i = 0; i < made.constraints.size(); ++i) {
+      if (description.constraints[i].limit) {
+        made.constraints[i].unit.clear();  // the numbers shown are then value / limit - 1
+      }
+    }
   }
   made.cost_unit = "simulated case";
   made.has_single_case = has_single_case(description);

@@ -119,10 +119,9 @@ FinishedArm load_finished_arm(const fs::path& folder, std::string_view format) {
   refuse_study(folder, format);
   const RunResult result = load_result(folder);
   if (!result.tracking) {
-    refuse_run(folder,
-               fmt::format("is a run on {}, which is a function, not an arm; {} needs a run of an "
-                           "arm. The formats csv, ioh, coco and json work for every run",
-                           sanitize(result.problem), format));
+    refuse_run(folder, fmt::format("is a run on {}, which has no arm; {} needs a run of an arm. "
+                                   "The formats csv, ioh, coco and json work for every run",
+                                   sanitize(result.problem), format));
   }
   if (!result.winner) {
     refuse_run(folder, fmt::format("this run found no design that could be simulated to its end, "

@@ -63,6 +63,9 @@ TEST(BadPath, SaysWhereItWasLookedFor) {
   EXPECT_EQ(problem_refusal("q1-complx.toml"),
             "there is no file 'q1-complx.toml' in the current folder, and no shipped problem has "
             "that name; did you mean 'q1-complex'?");
+  EXPECT_EQ(problem_refusal("python3 mine/mine.py"),
+            "there is no file 'python3 mine/mine.py' in the current folder; the name of a program "
+            "begins with exec:, as in 'exec:python3 mine/mine.py'");
   EXPECT_EQ(design_refusal("no-such-folder/d.toml"),
             "there is no file 'no-such-folder/d.toml' in the current folder");
   EXPECT_EQ(folder.shorten(problem_refusal(folder.path("q1.toml"))), "there is no file 'q1.toml'");

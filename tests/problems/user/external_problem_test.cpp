@@ -57,6 +57,20 @@ TEST(ExternalProblem, HasADescriptionAndNeitherAProgramNorSeveralCases) {
   EXPECT_EQ(recorded.resolved_json, loaded.resolved_json);
 }
 
+// Then the numbers of all constraints are g, and that of a limit is value / limit - 1.
+TEST(ExternalProblem, AConstraintWithALimitBesideOneWithoutHasNoUnit) {
+  const ProblemFolder folder;
+  folder.write("bench.toml", std::string(kBench) +
+                                 "[[constraint]]\nname = \"sag\"\nunit = \"mm\"\nlimit = 3\n"
+                                 "[[constraint]]\nname = \"gap\"\nunit = \"mm\"\n");
+  const LoadedProblem loaded = folder.load("bench.toml");
+  const ProblemDescription& problem = loaded.problem->description();
+  EXPECT_THAT(problem.limits, IsEmpty());
+  ASSERT_EQ(problem.constraints.size(), 3u);
+  EXPECT_EQ(problem.constraints[1].unit, "");
+  EXPECT_EQ(problem.constraints[2].unit, "mm");
+}
+
 TEST(ExternalProblem, CannotBeSimulatedAndSaysWhatToDo) {
   const ProblemFolder folder;
   folder.write("bench.toml", kBench);
