@@ -197,8 +197,8 @@ std::string describe_ranking(const StudyPlan& plan, const StudyResult& result, c
 std::string describe_plan(const StudyPlan& plan) {
   Table table({{"", false}, {"", false, true}});
   for (const StudyProblem& problem : plan.problems) {
-    const std::string settings =
-        problem.settings.empty() ? "" : " (" + join(problem.settings, ", ") + ")";
+    const std::vector<std::string> chosen = list_chosen_settings(problem);
+    const std::string settings = chosen.empty() ? "" : " (" + join(chosen, ", ") + ")";
     table.add_row(
         {"problem",
          fmt::format("{}: schedule {}, {}{}", problem.label, describe_schedule(problem),
