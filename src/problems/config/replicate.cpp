@@ -9,12 +9,13 @@
 #include "base/error.hpp"
 #include "problems/analytic/analytic.hpp"
 #include "problems/config/problem_loader.hpp"
+#include "problems/user/user_problem.hpp"
 
 namespace armwright {
 namespace {
 
 // A problem with another start.
-class StartedElsewhere final : public Problem {
+class StartedElsewhere final : public WrappedProblem {
  public:
   StartedElsewhere(std::shared_ptr<const Problem> problem, const std::vector<double>& start)
       : problem_(std::move(problem)), description_(problem_->description()) {
@@ -24,6 +25,7 @@ class StartedElsewhere final : public Problem {
     }
   }
 
+  const Problem& inner() const override { return *problem_; }
   const ProblemDescription& description() const override { return description_; }
   const TrackingProblem* tracking() const override { return problem_->tracking(); }
   BatchSize batch_size(CaseRole role) const override { return problem_->batch_size(role); }

@@ -14,6 +14,13 @@ namespace armwright {
 // Error{bad_data} if a server breaks its contract, and Error if none can be started.
 std::shared_ptr<const Problem> make_user_problem(UserProgram program);
 
+// A problem that changes the description of another one. The functions below see through it.
+class WrappedProblem : public Problem {
+ public:
+  // Returns the other problem. Valid as long as this object lives.
+  virtual const Problem& inner() const = 0;
+};
+
 // Returns whether a case failed although its program did not answer that it fails: the program
 // crashed, hung, or answered with a number that is not finite.
 bool is_fault_of_program(const CaseOutcome& outcome);
