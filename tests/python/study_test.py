@@ -98,7 +98,7 @@ class StudyTest(FolderTest):
                 call()
 
     def test_plugins_of_a_recorded_study_need_trust(self):
-        pathlib.Path("theirs").mkdir()
+        pathlib.Path("theirs/cells").mkdir(parents=True)
         pathlib.Path("theirs/study.toml").write_text('problems = ["sphere"]\nreplicates = 2\nbudget = 30\n'
                                                      'optimizers = ["ga", "exec:sh -c \'echo > PWNED\'"]\n')
         self.assertFalse(armwright.load_study("theirs").finished)

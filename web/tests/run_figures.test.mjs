@@ -480,6 +480,31 @@ test('a CSV text is signals only if all cells are numbers and the abscissa grows
   }
 });
 
+test('a record that cannot be shown says so, and one without signals is left out', () => {
+  const data = make_run_data();
+  const has_note = (record) => {
+    data.record = record;
+    return get_items(data).some((item) => item.id === 'winner-record-note');
+  };
+  assert.ok(has_note('t [s],x\n1,1\n0,1\n'));
+  assert.ok(has_note('t [s],x\n0,a\n1,2\n'));
+  assert.ok(!has_note('t [s],x\n0,1\n1,2\n'));
+  assert.ok(!has_note('\n'));
+  assert.ok(!has_note('t [s]\n0\n'));
+  assert.ok(!has_note(null));
+});
+
+test('the legend of the training names a test set only if incumbents were tested', () => {
+  const data = make_run_data();
+  const has_test = () => {
+    const figure = find(data, 'fitness');
+    return draw_svg(figure, kLight, get_initial_picks(figure), 640, 400).includes('incumbent on the test set');
+  };
+  assert.ok(has_test());
+  data.training.incumbents.test = data.training.incumbents.test.map(() => null);
+  assert.ok(!has_test());
+});
+
 test('an objective in metres without an arm keeps its unit, and a category shows its words', () => {
   const data = make_run_data();
   data.arm = null;

@@ -95,6 +95,18 @@ test('a single problem has all figures, and every one draws', () => {
   check_tabs(tabs);
 });
 
+test('the parallel axes say of each type of variable how its axis is divided', () => {
+  const data = study.make_study_data({ optimizers: 2, replicates: 2, problems: 1 });
+  const caption = () => find(study.make_study_tabs(data), 'parallel').caption;
+  assert.match(caption(), /Axes are logarithmic in the magnitude unless/);
+  assert.doesNotMatch(caption(), /integers|category/);
+  const [first, second] = data.problems[0].variables;
+  Object.assign(first, { type: 'integer' });
+  assert.match(caption(), /Axes of real variables are logarithmic.*Axes of integers are linear unless/);
+  Object.assign(second, { type: 'category', choices: ['thin', 'thick'], lower: 0, upper: 1 });
+  assert.match(caption(), /one place per word/);
+});
+
 test('several problems have a tab each, many a choice', () => {
   const few = study.make_study_tabs(study.make_study_data({ optimizers: 3, replicates: 4, problems: 2 }));
   assert.ok(find(few, 'convergence-q1-problem-1') && find(few, 'convergence-q1-problem-2') && find(few, 'ranks'));

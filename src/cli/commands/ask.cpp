@@ -65,21 +65,13 @@ class Warnings final : public RunObserver {
   }
 };
 
-json write_value(const DecisionVariable& variable, double value) {
-  if (variable.type == VariableType::category) {
-    return format_value(variable, value);
-  }
-  return variable.type == VariableType::integer ? json(static_cast<std::int64_t>(value))
-                                                : json(value);
-}
-
 std::string format_json(const std::vector<AskedPoint>& points, std::size_t waiting,
                         const ProblemDescription& problem) {
   json all = {{"points", json::array()}, {"waiting", waiting}};
   for (const AskedPoint& point : points) {
     json x = json::object();
     for (std::size_t i = 0; i < point.x.size(); ++i) {
-      x[problem.variables[i].name] = write_value(problem.variables[i], point.x[i]);
+      x[problem.variables[i].name] = to_json_value(problem.variables[i], point.x[i]);
     }
     all["points"].push_back({{"id", point.id}, {"x", std::move(x)}});
   }

@@ -50,8 +50,9 @@ std::string format_own_json(const LoadedProblem& problem, const CaseBlock& block
               {"test_set", block.set},
               {"cases", block.numbers.size()},
               {"failures", json::array()}};
-  for (const FileValue& one : list_values(description.variables, evaluated.x)) {
-    all["variables"][one.quantity.name] = one.word.empty() ? json(one.value) : json(one.word);
+  for (std::size_t i = 0; i < evaluated.x.size(); ++i) {
+    const DecisionVariable& variable = description.variables[i];
+    all["variables"][variable.name] = to_json_value(variable, evaluated.x[i]);
   }
   for (const char* key : {"objectives", "constraints", "metrics"}) {
     all[key] = json::object();

@@ -47,6 +47,7 @@ struct UnfinishedRun {
   std::uint64_t judgements = 0;
   std::int64_t budget = 0;
   std::vector<std::string> command_line;
+  bool is_asked = false;  // its evaluations are told (armwright ask)
 };
 
 UnfinishedRun read_unfinished(const std::filesystem::path& folder) {
@@ -56,7 +57,9 @@ UnfinishedRun read_unfinished(const std::filesystem::path& folder) {
   try {
     const json manifest = json::parse(read_checked_json(file, kLimit_bytes));
     run.command_line = manifest.at("command_line").get<std::vector<std::string>>();
-    run.budget = whole_from_json<std::int64_t>(manifest.at("configuration").at("run").at("budget"));
+    const json& settings = manifest.at("configuration").at("run");
+    run.is_asked = is_asked_run(settings);
+    run.budget = whole_from_json<std::int64_t>(settings.at("budget"));
   } catch (const json::exception& error) {
     throw Error(ErrorKind::bad_data, fmt::format("{}: is not a manifest that armwright wrote ({})",
                                                  file.string(), describe_json_error(error.what())));
@@ -118,11 +121,19 @@ int run_show(const ShowOptions& options, const Session& session) {
     return get_result_code(result);
   }
   const UnfinishedRun run = read_unfinished(folder);
-  const std::string command = sanitize(quote_command(run.command_line));
+  std::vector<std::vector<std::string>> commands = {run.command_line};
+  if (run.is_asked) {
+    commands = {{session.command_line.front(), "ask", options.folder},
+                {session.command_line.front(), "tell", options.folder, "FILE"}};
+  }
+  std::vector<std::string> lines;
+  for (const std::vector<std::string>& words : commands) {
+    lines.push_back(sanitize(quote_command(words)));
+  }
   if (options.json) {
     const json state = {
         {"finished", false},    {"evaluations", run.evaluations}, {"cases", run.cases},
-        {"budget", run.budget}, {"judgements", run.judgements},   {"resume", command}};
+        {"budget", run.budget}, {"judgements", run.judgements},   {"resume", lines.front()}};
     write_stdout(state.dump(1) + "\n");
   } else {
     write_stdout(
@@ -131,7 +142,7 @@ int run_show(const ShowOptions& options, const Session& session) {
                     "To resume:\n  {}\n",
                     sanitize(folder.string()), format_count(run.evaluations, "evaluation"),
                     run.cases, format_count(static_cast<unsigned long long>(run.budget), "case"),
-                    format_count(run.judgements, "judgement"), command));
+                    format_count(run.judgements, "judgement"), join(lines, "\n  ")));
   }
   return exit_code::kDone;
 }

@@ -33,6 +33,18 @@ nlohmann::json to_json_value(std::optional<double> value) {
   return value && std::isfinite(*value) ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
+nlohmann::json to_json_value(const DecisionVariable& variable, double value) {
+  switch (variable.type) {
+    case VariableType::category:
+      return format_value(variable, value);
+    case VariableType::integer:
+      return static_cast<std::int64_t>(value);
+    case VariableType::real:
+      break;
+  }
+  return value;
+}
+
 std::string format_quantity(double value, std::string_view unit) {
   if (!std::isfinite(value)) {
     return describe_number(value, unit);

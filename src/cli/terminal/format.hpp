@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "problems/interface/problem.hpp"
+
 namespace armwright {
 
 // Returns the value with `digits` significant digits, without an exponent for sizes from 1e-4 to
@@ -22,5 +24,7 @@ std::string format_count(unsigned long long count, std::string_view singular);
 
 // Returns null for a missing value and for NaN or infinity, which JSON cannot hold.
 nlohmann::json to_json_value(std::optional<double> value);
+// Returns the value of a variable: a whole number of an integer, the word of a category.
+nlohmann::json to_json_value(const DecisionVariable& variable, double value);
 
 }  // namespace armwright

@@ -47,24 +47,28 @@ bool is_tracking(const RunResult& result) {
          result.metric_names.end();
 }
 
+// Returns the value of the variable with this index: a whole number, a word, or six digits.
+std::string format_variable(const RunResult& result, std::size_t variable, double value) {
+  const DecisionVariable* const discrete = find_discrete(result, variable);
+  return discrete ? sanitize(format_value(*discrete, value)) : format_significant(value, 6);
+}
+
 std::string format_vector(const RunResult& result, const std::vector<double>& x,
                           const Style& style) {
   Table table({{"variable", false}, {"value"}});
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const DecisionVariable* const discrete = find_discrete(result, i);
-    table.add_row(
-        {sanitize(result.variable_names.at(i)),
-         discrete ? sanitize(format_value(*discrete, x[i])) : format_significant(x[i], 6)});
+    table.add_row({sanitize(result.variable_names.at(i)), format_variable(result, i, x[i])});
   }
   return table.format(style, 2);
 }
 
-std::string format_values(const ValuesFile& file, const Style& style) {
+std::string format_values(const RunResult& result, const std::vector<double>& x,
+                          const ValuesFile& file, const Style& style) {
   Table table({{"", false}, {""}, {"", false}});
-  for (const FileValue& one : file.variables) {
-    table.add_row({sanitize(one.quantity.name),
-                   one.word.empty() ? format_significant(one.value, 6) : sanitize(one.word),
-                   sanitize(one.quantity.unit)});
+  for (std::size_t i = 0; i < std::min(x.size(), file.variables.size()); ++i) {
+    const Quantity& quantity = file.variables[i].quantity;
+    table.add_row(
+        {sanitize(quantity.name), format_variable(result, i, x[i]), sanitize(quantity.unit)});
   }
   return table.format(style, 2);
 }
@@ -86,7 +90,7 @@ std::string format_winner(const RunResult& result, const std::filesystem::path& 
   }
   FolderChecksums(folder).check("winner.toml");
   if (!result.tracking) {
-    return title + format_values(load_values(file), style);
+    return title + format_values(result, winner.x, load_values(file), style);
   }
   return title + format_design(load_design(file.string()), style);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "base/text.hpp"
@@ -192,13 +193,39 @@ std::string describe_ranking(const StudyPlan& plan, const StudyResult& result, c
          "\n";
 }
 
+// Returns where the best winner of each problem is, with the command that shows it.
+std::string describe_best_winners(const StudyPlan& plan, const StudyResult& result,
+                                  const std::filesystem::path& folder) {
+  std::string text;
+  for (std::size_t p = 0; p < plan.problems.size(); ++p) {
+    Cell best{.problem = p};
+    double best_value = std::numeric_limits<double>::infinity();
+    for (const CellOutcome& cell : result.cells) {
+      if (cell.problem == plan.problems[p].label && cell.value < best_value) {
+        const auto optimizer =
+            std::ranges::find(plan.optimizers, cell.optimizer, &StudyOptimizer::label);
+        best.optimizer = static_cast<std::size_t>(optimizer - plan.optimizers.begin());
+        best.replicate = cell.replicate;
+        best_value = cell.value;
+      }
+    }
+    if (std::isfinite(best_value)) {
+      const std::vector<std::string> words = {"armwright", "show",
+                                              (folder / make_cell_path(plan, best)).string()};
+      text += fmt::format("Best winner of {}: {}\n", plan.problems[p].label,
+                          sanitize(quote_command(words)));
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string describe_plan(const StudyPlan& plan) {
   Table table({{"", false}, {"", false, true}});
   for (const StudyProblem& problem : plan.problems) {
-    const std::string settings =
-        problem.settings.empty() ? "" : " (" + join(problem.settings, ", ") + ")";
+    const std::vector<std::string> chosen = list_chosen_settings(problem);
+    const std::string settings = chosen.empty() ? "" : " (" + join(chosen, ", ") + ")";
     table.add_row(
         {"problem",
          fmt::format("{}: schedule {}, {}{}", problem.label, describe_schedule(problem),
@@ -318,7 +345,8 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
              "until 1 % of the way from the start to the best known value is left. Cases\nfailed: "
              "mean share of test cases {}.\nTables: {}\n",
              kSignificance, has_arm ? "with an error above 100 mm" : "without a number",
-             sanitize((folder / "tables").string()));
+             sanitize((folder / "tables").string())) +
+         describe_best_winners(plan, result, folder);
 }
 
 int end_study(const StudyPlan& plan, const std::filesystem::path& folder, unsigned jobs,

@@ -352,20 +352,35 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
   return loaded;
 }
 
-LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides,
-                           std::span<const EngineRow> engines, const ProgramSource& programs) {
-  const ReadStep step(fmt::format("the problem '{}'", sanitize(name_or_path)));
+namespace {
+
+// Returns the settings of a problem and the path that names it.
+std::pair<ConfigTable, std::filesystem::path> load_table(std::string_view name_or_path,
+                                                         std::span<const std::string> overrides) {
   if (is_program_name(name_or_path)) {
     const std::string name(name_or_path);
     const std::string toml =
         fmt::format("kind = \"program\"\n[program]\ncommand = {}\n", quote_toml(name));
-    return read_problem(ConfigTable::parse(problem_settings(), toml, name, overrides), name,
-                        engines, programs);
+    return {ConfigTable::parse(problem_settings(), toml, name, overrides), name};
   }
   const auto path = resolve_config("problems", name_or_path);
-  return read_problem(
-      ConfigTable::load(problem_settings(), path, overrides, find_config_folder() / "problems"),
-      path, engines, programs);
+  return {ConfigTable::load(problem_settings(), path, overrides, find_config_folder() / "problems"),
+          path};
+}
+
+}  // namespace
+
+LoadedProblem load_problem(std::string_view name_or_path, std::span<const std::string> overrides,
+                           std::span<const EngineRow> engines, const ProgramSource& programs) {
+  const ReadStep step(fmt::format("the problem '{}'", sanitize(name_or_path)));
+  const auto [table, path] = load_table(name_or_path, overrides);
+  return read_problem(table, path, engines, programs);
+}
+
+bool needs_program(std::string_view name_or_path, std::span<const std::string> overrides) {
+  const auto [table, path] = load_table(name_or_path, overrides);
+  return table.find(kProblemKind) == "program" &&
+         !table.get_table_or_empty(kProgramSettings).has("description");
 }
 
 std::vector<ProblemTitle> list_problems() {

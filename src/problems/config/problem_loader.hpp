@@ -92,6 +92,11 @@ LoadedProblem load_problem(std::string_view name_or_path,
                            std::span<const EngineRow> engines = engine_table(),
                            const ProgramSource& programs = {});
 
+// Returns whether load_problem() starts a program that describes the problem, or opens a library. A
+// problem with a recorded description needs none. Throws Error{usage} if there is no such problem or
+// its file is not valid, Error{io} if the file cannot be read.
+bool needs_program(std::string_view name_or_path, std::span<const std::string> overrides);
+
 // Loads the problem that a run recorded as LoadedProblem::resolved_json, also of a replicate
 // (make_replicate). It does not read the problem's file and starts no program. Files that the configuration names by a
 // relative path are looked for in `beside` first; the caller must compare input_hashes to see

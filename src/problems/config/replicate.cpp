@@ -15,7 +15,7 @@ namespace armwright {
 namespace {
 
 // A problem with another start.
-class StartedElsewhere final : public ProblemAdapter {
+class StartedElsewhere final : public WrappedProblem {
  public:
   StartedElsewhere(std::shared_ptr<const Problem> problem, const std::vector<double>& start)
       : problem_(std::move(problem)), description_(problem_->description()) {
@@ -25,6 +25,7 @@ class StartedElsewhere final : public ProblemAdapter {
     }
   }
 
+  const Problem& inner() const override { return *problem_; }
   const ProblemDescription& description() const override { return description_; }
   const TrackingProblem* tracking() const override { return problem_->tracking(); }
   BatchSize batch_size(CaseRole role) const override { return problem_->batch_size(role); }
@@ -45,7 +46,6 @@ class StartedElsewhere final : public ProblemAdapter {
                          std::uint64_t number) const override {
     return problem_->record_case(x, block, number);
   }
-  const Problem& adapted() const override { return *problem_; }
   void forget_cases() const override { problem_->forget_cases(); }
 
  private:

@@ -392,27 +392,37 @@ std::shared_ptr<const Problem> make_user_problem(UserProgram program) {
   return std::make_shared<UserProblem>(std::move(program));
 }
 
+namespace {
+
+// Returns the user's problem that this problem is or wraps; null for others.
+const UserProblem* find_user_problem(const Problem& problem) {
+  const auto* wrapper = dynamic_cast<const WrappedProblem*>(&problem);
+  return wrapper != nullptr ? find_user_problem(wrapper->inner())
+                            : dynamic_cast<const UserProblem*>(&problem);
+}
+
+}  // namespace
+
 const UserDescription* find_user_description(const Problem& problem) {
-  const auto* user = dynamic_cast<const UserProblem*>(&problem);
+  const UserProblem* user = find_user_problem(problem);
   return user == nullptr ? nullptr : &user->user_description();
 }
 
 ProblemWarnings* find_warnings(const Problem& problem) {
-  if (const auto* adapter = dynamic_cast<const ProblemAdapter*>(&problem)) {
-    return find_warnings(adapter->adapted());
-  }
-  const auto* user = dynamic_cast<const UserProblem*>(&problem);
+  const UserProblem* user = find_user_problem(problem);
   return user == nullptr ? nullptr : &user->warnings();
 }
 
 void require_server(const Problem& problem) {
-  if (const auto* user = dynamic_cast<const UserProblem*>(&problem)) {
+  if (const UserProblem* user = find_user_problem(problem)) {
     user->require_start();
   }
 }
 
 Evaluation make_evaluation(const Problem& problem, const CaseJob& job, CaseAnswer answer) {
-  return dynamic_cast<const UserProblem&>(problem).evaluate_answer(job, std::move(answer));
+  const UserProblem* user = find_user_problem(problem);
+  assert(user != nullptr);
+  return user->evaluate_answer(job, std::move(answer));
 }
 
 }  // namespace armwright

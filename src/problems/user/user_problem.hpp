@@ -35,17 +35,18 @@ class ProblemWarnings {
   std::vector<std::string> waiting_;
 };
 
-// A problem that leaves the simulation to another one.
-class ProblemAdapter : public Problem {
- public:
-  virtual const Problem& adapted() const = 0;
-};
-
 // Objectives of several cases are combined by their mean or worst value, constraints by their worst
 // value, metrics by their mean. Nothing starts before the first simulation. simulate() throws
 // BrokenProtocol if a server breaks its contract, Error if none can be started, and WorkStopped as
 // check_work_stop() does.
 std::shared_ptr<const Problem> make_user_problem(UserProgram program);
+
+// A problem that changes the description of another one. The functions below see through it.
+class WrappedProblem : public Problem {
+ public:
+  // Returns the other problem. Valid as long as this object lives.
+  virtual const Problem& inner() const = 0;
+};
 
 // Returns whether a case failed although its program did not answer that it fails: the program
 // crashed, hung, or answered with a number that is not finite.
@@ -53,8 +54,8 @@ bool is_fault_of_program(const CaseOutcome& outcome);
 // Returns the description that the user gave of a problem that make_user_problem() made; null for
 // other problems. Valid as long as the problem.
 const UserDescription* find_user_description(const Problem& problem);
-// Returns the warnings of a problem that make_user_problem() made, or that is an adapter of one; null
-// for other problems. Valid as long as the problem.
+// Returns the warnings of a problem that make_user_problem() made; null for other problems. Valid as
+// long as the problem.
 ProblemWarnings* find_warnings(const Problem& problem);
 // Throws Error{usage}, which says what to do, if a problem of make_user_problem() has no server.
 void require_server(const Problem& problem);

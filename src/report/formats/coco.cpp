@@ -33,6 +33,12 @@ std::string make_comment(const ProblemRuns& problem, const std::string& label) {
         fmt::format("Fref is the best feasible value of the exported runs, of '{}', replicate {}",
                     sanitize(problem.best_run.label), problem.best_run.replicate);
   }
+  for (const auto& [variable, choices] : problem.names.discrete) {
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      reference += fmt::format("{} {} = '{}'", i == 0 ? "; " + sanitize(variable) + ":" : ",", i,
+                               sanitize(choices[i]));
+    }
+  }
   return fmt::format("% {} on {}; {}\n", sanitize(label), sanitize(problem.name), reference);
 }
 

@@ -67,11 +67,21 @@ ordered_json write_scenario(const ProblemRuns& problem, const std::string& label
     runs.push_back(make_run(trace));
   }
   file.close();
-  return {{"dimension", problem.names.variables.size()},
-          {"path", data},
-          {"problem", problem.name},
-          {"variables", problem.names.variables},
-          {"runs", std::move(runs)}};
+  ordered_json words = ordered_json::object();
+  for (const auto& [variable, choices] : problem.names.discrete) {
+    if (!choices.empty()) {
+      words[variable] = choices;
+    }
+  }
+  ordered_json scenario = {{"dimension", problem.names.variables.size()},
+                           {"path", data},
+                           {"problem", problem.name},
+                           {"variables", problem.names.variables}};
+  if (!words.empty()) {
+    scenario["words"] = std::move(words);  // of categories, in the order of their numbers from 0
+  }
+  scenario["runs"] = std::move(runs);
+  return scenario;
 }
 
 // Writes a function's files for one label, if the label has runs on it.

@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "base/config.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/evidence/recorded_run.hpp"
+#include "report/page/comparison_settings.hpp"
 #include "report/page/page_data.hpp"
 #include "report/page/page_file.hpp"
 #include "study/analysis/study_result.hpp"
@@ -25,178 +25,6 @@ namespace {
 
 using nlohmann::json;
 using Folders = std::array<std::filesystem::path, 2>;
-
-// ---------------------------------------------------------------- settings
-
-// Adds every number and text in `value` under its dotted key.
-void flatten(const json& value, const std::string& key, std::map<std::string, std::string>& all) {
-  if (value.is_object()) {
-    for (const auto& [name, one] : value.items()) {
-      flatten(one, key.empty() ? name : key + "." + name, all);
-    }
-  } else {
-    all[key] = value.is_string() ? value.get<std::string>() : value.dump();
-  }
-}
-
-struct OneSetting {
-  std::string text;
-  std::string basis;  // what of the comparison's basis it belongs to; empty if to nothing
-};
-using Settings = std::map<std::string, OneSetting>;
-
-constexpr const char* kProblem = "the problem";
-constexpr const char* kTestSet = "the test set";
-constexpr const char* kBudget = "the budget";
-
-// Returns the part of the basis that a key of a problem belongs to, in words. Only keys that are
-// known not to change what is measured, nor the start, belong to none.
-std::string find_basis(const std::string& key) {
-  const auto is_in = [&](const char* table) {
-    return key == table || key.starts_with(table + std::string("."));
-  };
-  if (is_in("run") || is_in("schedule") || is_in("racing") || is_in("sweep") ||
-      is_in("sets.training") || is_in("sets.validation") || is_in("sets.validation_cases")) {
-    return "";
-  }
-  constexpr std::pair<const char*, const char*> kParts[] = {{"sets", kTestSet},
-                                                            {"physics", "the engine"},
-                                                            {"control", "the controller"},
-                                                            {"training", "the training"},
-                                                            {"variables", "the search space"}};
-  const auto part = std::ranges::find_if(kParts, [&](const auto& one) { return is_in(one.first); });
-  return part == std::end(kParts) ? kProblem : part->second;
-}
-
-// Returns the parts of the basis in which both sides differ.
-std::set<std::string> list_obstacles(const Settings& a, const Settings& b) {
-  std::set<std::string> parts;
-  for (const auto& [mine, theirs] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-    for (const auto& [key, one] : *mine) {
-      const auto other = theirs->find(key);
-      if (!one.basis.empty() && (other == theirs->end() || other->second.text != one.text)) {
-        parts.insert(one.basis);
-      }
-    }
-  }
-  return parts;
-}
-
-// Returns a list of ComparedSetting: one per key of either side, in the order of the keys.
-json make_settings(const Settings& a, const Settings& b) {
-  Settings all = a;
-  all.insert(b.begin(), b.end());
-  const auto find = [](const Settings& settings, const std::string& key) {
-    const auto found = settings.find(key);
-    return found == settings.end() ? json(nullptr) : json(sanitize(found->second.text));
-  };
-  json list = json::array();
-  for (const auto& [key, one] : all) {
-    list.push_back({{"name", sanitize(key)},
-                    {"a", find(a, key)},
-                    {"b", find(b, key)},
-                    {"basis", one.basis.empty() ? json(nullptr) : json(one.basis)}});
-  }
-  return list;
-}
-
-// Adds every setting of a problem, without its title and description.
-void add_problem(const json& configuration, const std::string& prefix, Settings& settings) {
-  std::map<std::string, std::string> all;
-  flatten(configuration, "", all);
-  for (const auto& [key, text] : all) {
-    if (key != "title" && key != "description" && key != "physics.simd" &&
-        !key.starts_with("published")) {
-      settings[prefix + key] = {text, find_basis(key)};
-    }
-  }
-}
-
-// Adds every number and text in `value`, which do not belong to the basis.
-void add_rest(const json& value, const std::string& key, Settings& settings) {
-  std::map<std::string, std::string> all;
-  flatten(value, key, all);
-  for (const auto& [name, text] : all) {
-    settings[name] = {text, ""};
-  }
-}
-
-// Returns what decides the run's course and result.
-Settings list_settings(const RecordedRun& run) {
-  Settings settings;
-  add_rest(run.configuration.at("run"), "run", settings);
-  add_problem(run.configuration.at("problem"), "problem.", settings);
-  settings["run.problem"] = {run.problem_name, kProblem};
-  if (const auto budget = settings.find("run.budget"); budget != settings.end()) {
-    budget->second.basis = kBudget;
-  }
-  for (const auto& [file, hash] : run.configuration.at("inputs").items()) {
-    // The other files are those of a plugin.
-    const bool is_problems = !run.problem || run.problem->input_hashes.contains(file);
-    settings["inputs." + file] = {hash.get<std::string>(), is_problems ? kProblem : ""};
-  }
-  return settings;
-}
-
-template <typename Items>
-std::set<std::string> list_labels(const Items& items) {
-  std::set<std::string> labels;
-  for (const auto& one : items) {
-    labels.insert(one.label);
-  }
-  return labels;
-}
-
-std::string join_labels(const std::set<std::string>& labels) {
-  return join(std::vector<std::string>(labels.begin(), labels.end()), ", ");
-}
-
-// Returns the settings of a problem of a study, with names that begin with `prefix`. Budget and
-// default optimizer of the problem itself count for no study.
-Settings list_settings(const StudyProblem& problem, const std::string& prefix) {
-  json configuration = json::parse(problem.loaded.resolved_json);
-  configuration.erase("run");
-  configuration["schedule"] = describe_schedule(problem);
-  Settings settings;
-  add_problem(configuration, prefix, settings);
-  for (const auto& [file, hash] : problem.loaded.input_hashes) {
-    settings[prefix + "inputs." + file] = {hash, kProblem};
-  }
-  return settings;
-}
-
-// Returns the settings of a study. Those of a problem or an optimizer count only if the other study
-// has it, too.
-Settings list_settings(const StudyPlan& plan, const StudyPlan& other) {
-  json recorded = json::parse(ConfigTable::parse(to_toml(plan), "study.toml").to_json());
-  const json optimizers = recorded.at("optimizer");
-  for (const char* key : {"plan_sha256", "name", "title", "problem", "optimizer"}) {
-    recorded.erase(key);
-  }
-  Settings settings;
-  add_rest(recorded, "", settings);
-  settings["budget"].basis = kBudget;
-  settings["constraint_tolerance"].basis = "the tolerance of constraints";
-  settings["value"] = {plan.value == StudyValue::failures ? "failures" : "objective",
-                       "the value of a run"};
-  settings["problems"] = {join_labels(list_labels(plan.problems)), ""};
-  settings["optimizers"] = {join_labels(list_labels(plan.optimizers)), ""};
-  for (const StudyProblem& problem : plan.problems) {
-    if (list_labels(other.problems).contains(problem.label)) {
-      settings.merge(list_settings(problem, "problems." + problem.label + "."));
-    }
-  }
-  for (json one : optimizers) {
-    const auto label = one.at("label").get<std::string>();
-    if (list_labels(other.optimizers).contains(label)) {
-      for (const char* key : {"label", "baseline", "description"}) {
-        one.erase(key);
-      }
-      add_rest(one, "optimizers." + label, settings);
-    }
-  }
-  return settings;
-}
 
 // ---------------------------------------------------------------- the page
 
@@ -334,17 +162,17 @@ json make_paired_errors(const RecordedRun& a, const RecordedRun& b, bool same_ca
 
 // Returns whether both runs judge their winners on the same cases, which follow from the problem and
 // its test set.
-bool have_same_cases(const Settings& a, const Settings& b) {
+bool have_same_cases(const ComparedSettings& a, const ComparedSettings& b) {
   const std::set<std::string> obstacles = list_obstacles(a, b);
-  return !obstacles.contains(kProblem) && !obstacles.contains(kTestSet);
+  return !obstacles.contains(kBasisProblem) && !obstacles.contains(kBasisTestSet);
 }
 
 std::optional<json> make_runs(const Folders& folders, PageOptions options, StopSignal& stop,
                               RunObserver& observer) {
   const RecordedRun a = read_recorded_run(folders[0]);
   const RecordedRun b = read_recorded_run(folders[1]);
-  const Settings settings_a = list_settings(a);
-  const Settings settings_b = list_settings(b);
+  const ComparedSettings settings_a = list_settings(a);
+  const ComparedSettings settings_b = list_settings(b);
   const bool same_cases = have_same_cases(settings_a, settings_b);
   const auto text_a = make_run_page(folders[0], options, stop, observer);
   if (!text_a) {
@@ -364,7 +192,7 @@ std::optional<json> make_runs(const Folders& folders, PageOptions options, StopS
     return std::nullopt;
   }
   json page_b = json::parse(*text_b);
-  json page = make_frame(folders, page_a, page_b, make_settings(settings_a, settings_b));
+  json page = make_frame(folders, page_a, page_b, make_compared_settings(settings_a, settings_b));
   if (!page_a["replays"].empty() && !page_b["replays"].empty()) {
     json replay =
         merge_replays(std::move(page_a["replays"].front()), std::move(page_b["replays"].front()));
@@ -445,13 +273,15 @@ json make_side(const std::map<int, double>& values) {
 // Returns why the results of a problem of both studies cannot be compared; empty if they can.
 std::string find_obstacle(const StudyPlan& plan_a, const StudyProblem& a, const StudyPlan& plan_b,
                           const StudyProblem& b) {
-  std::set<std::string> parts = list_obstacles(list_settings(a, ""), list_settings(b, ""));
+  std::set<std::string> parts = list_obstacles(list_settings(a), list_settings(b));
   if (plan_a.constraint_tolerance != plan_b.constraint_tolerance) {
     parts.insert("the tolerance of constraints");
   }
   return parts.empty()
              ? ""
-             : fmt::format("{} {}", join_labels(parts), parts.size() == 1 ? "differs" : "differ");
+             : fmt::format("{} {}",
+                           join(std::vector<std::string>(parts.begin(), parts.end()), ", "),
+                           parts.size() == 1 ? "differs" : "differ");
 }
 
 // Returns why replicates with the same number form no pairs, though the results can be compared;
@@ -581,9 +411,9 @@ std::optional<json> make_studies(const Folders& folders, PageOptions options, St
   }
   json page_a = json::parse(*text_a);
   json page_b = json::parse(*text_b);
-  json page =
-      make_frame(folders, page_a, page_b,
-                 make_settings(list_settings(plan_a, plan_b), list_settings(plan_b, plan_a)));
+  json page = make_frame(
+      folders, page_a, page_b,
+      make_compared_settings(list_settings(plan_a, plan_b), list_settings(plan_b, plan_a)));
   const StudyResult result_a = analyze_study(plan_a, folders[0], MissingCells::left_out);
   const StudyResult result_b = analyze_study(plan_b, folders[1], MissingCells::left_out);
   for (json& note : list_omissions(result_a, result_b)) {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/base64.hpp"
+#include "base/folder.hpp"
 #include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "report/evidence/page_json.hpp"
@@ -114,6 +115,11 @@ void add_winner_record(const RecordedRun& run, json& page, std::vector<std::stri
   for (const auto& [name, hash] : checksums.lines()) {
     const bool is_record = name == kWinnerRecord;
     if (!is_record && !name.starts_with(kWinnerFiles)) {
+      continue;
+    }
+    if (!path_exists(run.folder / name)) {
+      notes.push_back(fmt::format("{} is missing; the command that began the run makes it again.",
+                                  sanitize(name)));
       continue;
     }
     const std::string bytes = checksums.read(name, kRecordLimit_bytes);

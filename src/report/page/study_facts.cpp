@@ -65,8 +65,8 @@ json make_study_facts(const StudyPlan& plan) {
   for (const StudyProblem& problem : plan.problems) {
     const std::string title =
         problem.loaded.title.empty() ? problem.loaded.name : problem.loaded.title;
-    const std::string settings =
-        problem.settings.empty() ? "" : " (" + join(problem.settings, ", ") + ")";
+    const std::vector<std::string> chosen = list_chosen_settings(problem);
+    const std::string settings = chosen.empty() ? "" : " (" + join(chosen, ", ") + ")";
     add("Problem " + sanitize(problem.label), title + settings);
   }
   add("Optimizers", describe_optimizers(plan, false));

@@ -12,6 +12,8 @@
 namespace armwright {
 namespace {
 
+constexpr const char* kConstraintWeight = "constraint_weight";
+
 // Returns "at 5000 simulations", the budget of every optimizer.
 std::string describe_budget(const StudyPlan& plan) {
   return fmt::format("at {} simulations", plan.budget);
@@ -96,6 +98,41 @@ std::vector<std::string> describe_failures(const StudyPlan& plan, const ProblemR
     return std::pair(one.failure_mean_rank, one.mean_failure_share);
   });
   return describe_standing(plan, where, where, order, problem.failure_pairs);
+}
+
+// Names the optimizers that ended without a feasible winner, and how those that have the option weigh
+// violations.
+std::vector<std::string> describe_violations(const StudyPlan& plan, const StudyProblem& planned,
+                                             const ProblemResult& problem) {
+  if (planned.loaded.problem->description().constraints.empty()) {
+    return {};
+  }
+  std::vector<std::string> counts, weights;
+  for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
+    const OptimizerResult& one = problem.optimizers[o];
+    const StudyOptimizer& optimizer = plan.optimizers[o];
+    if (one.infinite == 0) {
+      continue;
+    }
+    counts.push_back(
+        fmt::format("{} ({} of {})", optimizer.label, one.infinite, one.values.size()));
+    if (optimizer.parsed.values().contains(kConstraintWeight)) {
+      weights.push_back(fmt::format("{} ({})", optimizer.label,
+                                    to_text(optimizer.parsed.values().at(kConstraintWeight))));
+    }
+  }
+  if (counts.empty()) {
+    return {};
+  }
+  return {fmt::format(
+      "On {}, runs of these optimizers have no winner that meets the constraints on the test set: "
+      "{}{}.",
+      problem.label, join_names(counts),
+      weights.empty()
+          ? ""
+          : fmt::format("; the option constraint_weight of {} weighs violations against "
+                        "the objective (docs/constrained.md)",
+                        join_names(weights)))};
 }
 
 // Says whether the best mean rank depends on a single problem.
@@ -290,9 +327,11 @@ std::vector<std::string> describe_verdict(const StudyPlan& plan, const StudyResu
   };
   for (const ProblemResult& problem : result.problems) {
     add(describe_problem(plan, problem, result.missing));
+    const StudyProblem& planned =
+        *std::ranges::find(plan.problems, problem.label, &StudyProblem::label);
+    add(describe_violations(plan, planned, problem));
     add(describe_failures(plan, problem));
-    add(describe_target_verdict(
-        plan, *std::ranges::find(plan.problems, problem.label, &StudyProblem::label), problem));
+    add(describe_target_verdict(plan, planned, problem));
   }
   add(describe_overall(plan, result));
   add(describe_limits(plan, result));

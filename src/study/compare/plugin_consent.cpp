@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/file_descriptor.hpp"
+#include "base/folder_checksums.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
 #include "optimizers/plugins/recorded_optimizer.hpp"
@@ -132,6 +134,15 @@ class StudyMemory {
 };
 
 }  // namespace
+
+bool is_record_of_study(const std::filesystem::path& file) {
+  const auto folder = file.parent_path();  // of a file in the current folder it is empty
+  std::error_code ignored;
+  return file.filename() == "study.toml" &&
+         std::ranges::any_of(std::array{kChecksumFile, "cells", "attempts"}, [&](const char* name) {
+           return std::filesystem::exists(std::filesystem::symlink_status(folder / name, ignored));
+         });
+}
 
 bool needs_consent(const NamedOptimizer& optimizer) {
   return is_plugin(optimizer.name) || optimizer.is_problem ||

@@ -17,6 +17,10 @@
 
 namespace armwright {
 
+// Returns whether a study's file may be the record of a study: it lies in the folder of a study that
+// has begun, under the name of the record. Such a file may lack its hash, because somebody changed it.
+bool is_record_of_study(const std::filesystem::path& file);
+
 // Returns whether the optimizer of a recorded plan needs consent: it is a plugin, or it has an
 // option that names a file to write to, which recorded plans never have.
 bool needs_consent(const NamedOptimizer& optimizer);

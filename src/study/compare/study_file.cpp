@@ -154,13 +154,13 @@ bool load_as_recorded(const NamedProblem& named, StudyProblem& problem) {
 // Adds the description of a problem's program to the settings, so that the recorded plan can be read
 // without the program.
 void record_description(StudyProblem& problem) {
-  constexpr std::string_view kDescription = "program.description=";
-  const bool is_recorded = std::ranges::any_of(
-      problem.settings, [&](const std::string& text) { return text.starts_with(kDescription); });
+  const bool is_recorded = std::ranges::any_of(problem.settings, [&](const std::string& text) {
+    return text.starts_with(kRecordedDescription);
+  });
   const auto resolved = nlohmann::json::parse(problem.loaded.resolved_json);
   if (!is_recorded && resolved.contains("program")) {
     problem.settings.push_back(
-        std::string(kDescription) +
+        std::string(kRecordedDescription) +
         quote_toml(resolved.at("program").at("description").get<std::string>()));
   }
 }
@@ -419,7 +419,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
     check_plan_hash(path);
     // Plugins that the user names in `optimizers` need no consent. A file of the user's own is run
     // as a script is.
-    const bool is_of_record = raw.is_recorded || path.filename() == "study.toml";
+    const bool is_of_record = raw.is_recorded || is_record_of_study(path);
     plan.programs.may_describe &= !(is_of_record && request.problems.empty());
     plan.programs.may_simulate =
         plan.programs.may_describe || request.plugins != PluginUse::preview;

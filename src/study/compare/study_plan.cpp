@@ -15,6 +15,7 @@
 #include "problems/config/problem_loader.hpp"
 #include "sim/tracking/design.hpp"
 #include "study/compare/incumbents.hpp"
+#include "study/compare/study_reader.hpp"
 
 namespace armwright {
 namespace {
@@ -153,6 +154,13 @@ Schedule get_schedule(const StudyPlan& plan, const Cell& cell) {
   const StudyOptimizer& optimizer = plan.optimizers[cell.optimizer];
   return optimizer.schedule.value_or(problem.own_schedules ? optimizer.own_schedule
                                                            : problem.schedule);
+}
+
+std::vector<std::string> list_chosen_settings(const StudyProblem& problem) {
+  std::vector<std::string> settings = problem.settings;
+  std::erase_if(settings,
+                [](const std::string& text) { return text.starts_with(kRecordedDescription); });
+  return settings;
 }
 
 std::string describe_schedule(const StudyProblem& problem) {

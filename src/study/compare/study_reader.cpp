@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "problems/config/config_files.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "study/compare/study_methods.hpp"
 
 namespace armwright {
@@ -359,8 +360,23 @@ void keep_selection(const std::filesystem::path& recorded, StudyPlan& plan) {
   plan.selection.most = 0;
 }
 
-std::string read_study_title(const std::string& file) {
-  return ConfigTable::load(study_settings(), resolve_config("studies", file)).get(kStudyTitle);
+StudyOutline read_study_outline(const std::string& file) {
+  const auto path = resolve_config("studies", file);
+  StudyPlan plan;
+  const RawPlan raw = read_study_file(path, plan);
+  StudyOutline outline{.name = plan.name.empty() ? path.stem().string() : plan.name,
+                       .title = plan.title,
+                       .replicates = plan.replicates,
+                       .budget = plan.budget};
+  const auto get_label = [](const auto& one) { return one.label.empty() ? one.name : one.label; };
+  std::ranges::transform(raw.problems, std::back_inserter(outline.problems), get_label);
+  std::ranges::transform(raw.optimizers, std::back_inserter(outline.optimizers), get_label);
+  outline.needs_programs = std::ranges::any_of(raw.problems, [&](const NamedProblem& problem) {
+    std::vector<std::string> settings = raw.settings;
+    settings.insert(settings.end(), problem.settings.begin(), problem.settings.end());
+    return needs_program(problem.name, settings);
+  });
+  return outline;
 }
 
 }  // namespace armwright

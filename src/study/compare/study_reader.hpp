@@ -14,6 +14,9 @@
 
 namespace armwright {
 
+// The setting of a problem with the description that its program gave of it.
+inline constexpr std::string_view kRecordedDescription = "program.description=";
+
 struct NamedOptimizer {
   std::string name;
   std::string label = {};

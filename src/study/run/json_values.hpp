@@ -34,6 +34,12 @@ Number whole_from_json(const nlohmann::json& value) {
   return value.get<Number>();
 }
 
+// Returns whether the settings of a run in its manifest are those of a run whose evaluations are told
+// (ask_tell.hpp).
+inline bool is_asked_run(const nlohmann::json& run) {
+  return run.value("selection", nlohmann::json::object()).value("evaluated_only", false);
+}
+
 // For values that are minimised: infinity is written as null.
 inline nlohmann::json value_to_json(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);

@@ -59,10 +59,14 @@ RunResult make_result(const RunPlan& plan) {
   return result;
 }
 
-void describe_start(const RunFolder& folder, const JournalContent& journal, RunObserver& observer) {
+// The build matters for simulations. A run whose evaluations are told has none.
+void describe_start(const RunFolder& folder, bool is_told, const JournalContent& journal,
+                    RunObserver& observer) {
   for (const std::string& warning : folder.warnings()) {
-    observer.on_message("warning: " + warning +
-                        "; if the results differ, resuming stops with an error");
+    if (!is_told) {
+      observer.on_message("warning: " + warning +
+                          "; if the results differ, resuming stops with an error");
+    }
   }
   if (journal.torn_bytes > 0) {
     observer.on_message(
@@ -161,7 +165,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   };
   JournalContent recorded;
   Journal journal(folder.folder(), folder.journal().filename().string(), recorded);
-  describe_start(folder, recorded, observer);
+  describe_start(folder, request.ask != nullptr, recorded, observer);
   std::optional<ThreadExecutor> threads;
   if (request.executor == nullptr) {
     threads.emplace(request.jobs);

@@ -12,6 +12,7 @@
 #include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "study/compare/cell.hpp"
+#include "study/run/json_values.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/run/run_times.hpp"
@@ -108,6 +109,7 @@ class RunSurveyor {
       const json& run = manifest["configuration"]["run"];
       recorded_optimizer_ = run.value("optimizer", std::string());
       recorded_seed_ = run.value("seed", json());
+      survey_.is_asked = is_asked_run(run);
     } catch (const json::exception& error) {
       return fmt::format("it is not one that armwright wrote ({})",
                          describe_json_error(error.what()));

@@ -44,6 +44,7 @@ struct RunSurvey {
   std::string made_by;  // from result.json: "q1-complex --optimizer ga --seed 1"; may be empty
   std::vector<Finding> findings;         // with files relative to the run's folder
   bool is_manifest_lost = false;         // no repair can restore it
+  bool is_asked = false;                 // its evaluations are told (armwright ask)
   bool has_checksums = false;            // the run has begun with checksums
   std::optional<JournalSurvey> journal;  // empty if there is no journal that can be read
   bool is_journal_unreadable = false;

@@ -328,6 +328,9 @@ std::vector<std::string> make_command(const StoreSurvey& survey, const std::stri
     case StoreSurvey::Kind::run:
       break;
   }
+  if (survey.runs.front().is_asked) {
+    return {program, "ask", folder.string()};
+  }
   const auto& recorded = survey.runs.front().command_line;
   if (recorded.size() < 2) {
     return {};

@@ -8,6 +8,7 @@
 namespace armwright {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -18,6 +19,13 @@ StudyPlan make_plan(int replicates) {
   request.replicates = replicates;
   request.budget = 100;
   return make_study_plan(request);
+}
+
+TEST(DescribePlan, ShowsSettingsButNoRecordedDescriptions) {
+  StudyPlan plan = make_plan(2);
+  plan.problems[0].settings = {"function.dimension=3", "program.description={\"variables\": []}"};
+  EXPECT_THAT(describe_plan(plan),
+              AllOf(HasSubstr("(function.dimension=3)"), Not(HasSubstr("description"))));
 }
 
 TEST(DescribePower, SaysWhichDifferenceTheStudyCanShow) {

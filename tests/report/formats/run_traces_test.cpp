@@ -144,6 +144,21 @@ TEST(RunTraces, ProblemsWithDiscreteVariablesHaveProposalsAndWords) {
   EXPECT_EQ(problem["discrete_variables"]["teeth"], nlohmann::json::array());
   EXPECT_FALSE(problem["runs"][0]["evaluations"][0].contains("proposed"));
   EXPECT_EQ(problem["runs"][0]["evaluations"][1]["proposed"][0], 1.25);
+  write_ioh(collected, folder / "ioh");
+  const auto read_only = [&](const std::filesystem::path& below, const std::string& ending) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(below)) {
+      if (entry.path().extension() == ending) {
+        return read_file(entry.path(), 1 << 16);
+      }
+    }
+    return std::string();
+  };
+  const auto scenario = nlohmann::json::parse(read_only(folder / "ioh", ".json"))["scenarios"][0];
+  EXPECT_EQ(scenario["words"]["oil"][4], "thick");
+  EXPECT_FALSE(scenario["words"].contains("teeth"));
+  write_coco(collected, folder / "coco");
+  EXPECT_THAT(read_only(folder / "coco", ".info"), HasSubstr("; oil: 0 = '"));
+  EXPECT_THAT(read_only(folder / "coco", ".info"), HasSubstr(", 4 = 'thick'"));
 }
 
 }  // namespace

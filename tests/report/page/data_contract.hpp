@@ -1,6 +1,7 @@
-// Reads the keys of an interface in web/src/data.ts, which defines the data of a page.
+// Reads the keys of an interface in web/src/data.ts and web/src/data, which define the data of a page.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -12,9 +13,18 @@
 
 namespace armwright {
 
+// Returns the text of all files with the types of the page's data.
+inline std::string read_page_types() {
+  const auto source = std::filesystem::path(ARMWRIGHT_CONFIGS) / "../web/src";
+  std::string text = read_file(source / "data.ts", 1 << 20);
+  for (const auto& entry : std::filesystem::directory_iterator(source / "data")) {
+    text += read_file(entry.path(), 1 << 20);
+  }
+  return text;
+}
+
 inline std::set<std::string> read_contract(const std::string& interface) {
-  const std::string text =
-      read_file(std::filesystem::path(ARMWRIGHT_CONFIGS) / "../web/src/data.ts", 1 << 20);
+  const std::string text = read_page_types();
   const std::regex head("export interface " + interface + "( extends (\\w+))? \\{");
   std::smatch found;
   if (!std::regex_search(text, found, head)) {

@@ -5,10 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "base/error.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/config_files.hpp"
+#include "report/page/data_contract.hpp"
 #include "report/page/page_data.hpp"
 #include "report/page/unpack.hpp"
 #include "study/run_support.hpp"
@@ -21,9 +23,9 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-// Returns the fields of an interface in web/src/data.ts, without those of its base.
+// Returns the fields of an interface of the page's data, without those of its base.
 std::set<std::string> read_interface(const std::string& name) {
-  std::ifstream file(std::string(ARMWRIGHT_CONFIGS) + "/../web/src/data.ts");
+  std::istringstream file(read_page_types());
   const std::regex field("^  (\\w+)\\??: .*");
   std::set<std::string> fields;
   bool inside = false;

@@ -156,6 +156,34 @@ TEST(Verdict, SaysWhetherTheLeadDependsOnOneProblem) {
             "these problems alone is left out: sphere and rastrigin.");
 }
 
+TEST(Verdict, NamesOptimizersWithoutFeasibleWinnersAndTheirWeights) {
+  StudyRequest request;
+  request.problems = {"constrained"};
+  request.optimizers = {"cmaes", "random", "ga"};
+  request.replicates = 15;
+  request.budget = 100;
+  request.baselines = false;
+  ProblemResult problem;
+  problem.optimizers.resize(3);
+  for (OptimizerResult& one : problem.optimizers) {
+    one.values.assign(15, 1.0);
+  }
+  const StudyPlan plan = make_study_plan(request);
+  problem.pairs = {make_pair(0, 1, false), make_pair(0, 2, false), make_pair(1, 2, false)};
+  EXPECT_THAT(describe(plan, problem), Not(HasSubstr("constraint")));
+  problem.optimizers[1].infinite = 2;
+  EXPECT_THAT(describe(plan, problem),
+              HasSubstr("On constrained, runs of these optimizers have no winner that meets the "
+                        "constraints on the test set: random (2 of 15).\n"));
+  problem.optimizers[0].infinite = 3;
+  EXPECT_THAT(describe(plan, problem),
+              HasSubstr("cmaes (3 of 15) and random (2 of 15); the option constraint_weight of "
+                        "cmaes (10) weighs violations against the objective"));
+  // A run without any winner is no matter of constraints on a problem that has none.
+  EXPECT_THAT(describe(make_sphere_plan({"cmaes", "random", "ga"}, 15), problem),
+              Not(HasSubstr("constraint")));
+}
+
 TEST(Verdict, SaysThatRunningTimesOfVersionOneAreCoarse) {
   const StudyPlan plan = make_sphere_plan({"ga", "cmaes"}, 6);
   StudyResult result = analyze_values(plan, {{1, 2, 3, 4, 5, 6}, {2, 3, 4, 5, 6, 7}});

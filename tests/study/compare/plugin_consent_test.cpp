@@ -82,6 +82,27 @@ TEST_F(PluginConsent, AStudyIsReadWithoutItsPlugins) {
   EXPECT_FALSE(has_run());
 }
 
+TEST_F(PluginConsent, AFileOfTheUserMayHaveTheNameOfARecord) {
+  const auto own = temporary_ / "own";
+  std::filesystem::create_directory(own);
+  StudyRequest request;
+  request.file = (own / "study.toml").string();
+  write_file_atomically(request.file, "problems = [\"exec:sh -c 'echo > " +
+                                          (temporary_ / "PWNED").string() +
+                                          "'\"]\noptimizers = [\"ga\"]\nbudget = 30\n");
+  // In the folder of a study that has begun, it is a record that somebody has changed.
+  for (const char* name : {"SHA256SUMS", "cells", "attempts"}) {
+    std::filesystem::create_directory(own / name);
+    EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { make_study_plan(request); }),
+                HasSubstr("its description is not recorded"));
+    EXPECT_FALSE(has_run()) << name;
+    std::filesystem::remove(own / name);
+  }
+  EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { make_study_plan(request); }),
+              HasSubstr("before it described itself"));
+  EXPECT_TRUE(has_run());
+}
+
 TEST_F(PluginConsent, RunningNeedsConsentAndTheMessageSaysWhatWouldRun) {
   plant_program();
   StudyRequest request;

@@ -7,8 +7,10 @@
 #include <deque>
 
 #include "base/error.hpp"
+#include "base/remove_checksums.hpp"
 #include "study/own_problem.hpp"
 #include "study/run_support.hpp"
+#include "study/survey/store_survey.hpp"
 
 namespace armwright {
 namespace {
@@ -16,6 +18,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 class AskTell : public RunTest {
@@ -102,6 +105,31 @@ TEST_F(AskTell, HandsOutEachPointOnceAndShowsWhatWaits) {
   EXPECT_THAT(ask_for(request, 100).points, IsEmpty());
   tell_one(request, second.points.back());
   EXPECT_THAT(ask_for(request, 100).waiting, SizeIs(5));
+}
+
+TEST_F(AskTell, AnUnfinishedRunIsContinuedByAskingAgain) {
+  const RunRequest request = make_request("ga", "run");
+  ask_for(request, 1);
+  EXPECT_THAT(make_command(survey_store(request.folder), "armwright", request.folder),
+              ElementsAre("armwright", "ask", request.folder.string()));
+}
+
+TEST_F(AskTell, AnotherBuildIsNoWarningBecauseNothingIsSimulated) {
+  class Messages final : public RunObserver {
+   public:
+    void on_progress(const Progress& /*progress*/) override {}
+    void on_message(const std::string& message) override { text += message + "\n"; }
+    std::string text;
+  } messages;
+  const RunRequest request = make_request("ga", "run");
+  ask_for(request, 1);
+  remove_checksums(request.folder);
+  const auto file = request.folder / "manifest.json";
+  std::string manifest = read_file(file, 1 << 20);
+  manifest.insert(manifest.find("\"version\": \"") + 12, "9");
+  write_file_atomically(file, manifest);
+  EXPECT_THAT(ask(request, 100, messages).points, SizeIs(5));
+  EXPECT_THAT(messages.text, Not(HasSubstr("warning")));
 }
 
 TEST_F(AskTell, ASequentialOptimizerAsksForOnePoint) {

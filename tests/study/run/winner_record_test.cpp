@@ -41,6 +41,17 @@ TEST_F(WinnerRecord, IsWrittenAndMadeAgainWhereItIsMissing) {
   }
 }
 
+TEST_F(WinnerRecord, AReplicateOfAComparisonHasTheSameFiles) {
+  RunPlan plan = make_plan(true);
+  plan.problem = make_replicate(plan.problem, 1, "train/study-1", {1, 2});
+  ASSERT_NE(find_user_description(*plan.problem.problem), nullptr);
+  ASSERT_TRUE(run(plan, "run"));
+  EXPECT_NE(read_text("run/winner.toml").find("name = \"n\""), std::string::npos);
+  EXPECT_TRUE(path_exists(temporary_ / "run/winner-record.csv"));
+  plan.problem = make_replicate(make_own_problem(describe_own(), nullptr), 1, "train/1", {1, 2});
+  EXPECT_THROW(require_server(*plan.problem.problem), Error);
+}
+
 TEST_F(WinnerRecord, IsAbsentIfTheProblemRecordsNothing) {
   ASSERT_TRUE(run(make_plan(false), "run"));
   EXPECT_FALSE(path_exists(temporary_ / "run/winner-record.csv"));

@@ -53,6 +53,27 @@ function get_lines(scope: Scope, problem: StudyProblem, which: string): Line[] {
   }, [] as Line[]);
 }
 
+// Returns what the name of an axis says of its scale; the caption explains the words.
+function describe_axis(variable: Variable): string {
+  if (variable.type === 'real') {
+    return variable.logarithmic ? '' : ' (linear)';
+  }
+  return variable.logarithmic ? ` (${variable.type}, logarithmic)` : ` (${variable.type})`;
+}
+
+// Explains the axes of the types that the problems have.
+function explain_axes(scope: Scope): string {
+  const has = (type: Variable['type']) => scope.problems.some((problem) => problem.variables.some((one) => one.type === type));
+  return (
+    (has('real')
+      ? `Axes ${has('integer') || has('category') ? 'of real variables ' : ''}are logarithmic in the magnitude unless their name says linear. ` +
+        'The sign is that of the numbers at their ends. '
+      : '') +
+    (has('integer') ? 'Axes of integers are linear unless their name says logarithmic. ' : '') +
+    (has('category') ? 'An axis of a category has one place per word, in the order of the words; this order has no meaning. ' : '')
+  );
+}
+
 type Drawing = { coord(point: number[]): number[]; getHeight(): number };
 
 const kUpright_px = 24; // axes closer than this have no room for numbers beside each other
@@ -127,8 +148,7 @@ function make_axes(look: Look, variables: Variable[]): Part {
             y: bottom + (is_upright ? 44 : 22),
             rotation: is_upright ? Math.PI / 2 : Math.PI / 5,
             style: {
-              text:
-                shorten(variable.name, 22) + (variable.type === 'real' ? (variable.logarithmic ? '' : ' (linear)') : ` (${variable.type})`),
+              text: shorten(variable.name, 22) + describe_axis(variable),
               fill: look.text,
               font: '10px ' + look.font,
               textAlign: 'right',
@@ -229,7 +249,7 @@ export function make_parallel(all: Scope): Figure | null {
     title: end_title(scope, "The winners' designs"),
     caption:
       'Each line is the winning design of a run. Each axis is a variable between its bounds, and the triangle marks the nominal start. ' +
-      'Axes are logarithmic in the magnitude unless their name says linear. The sign is that of the numbers at their ends. ' +
+      explain_axes(scope) +
       'Where the lines of good runs meet, the problem determines the variable. Where they spread, the variable hardly matters, or there are several solutions. ' +
       'Lines that end at a bound suggest that the bound is too tight. The figure shows interactions of neighbouring axes only. ' +
       'The best run of each optimizer was chosen by its value on the test set. ' +
@@ -247,7 +267,9 @@ export function make_parallel(all: Scope): Figure | null {
           { label: 'optimizer' } as { label: string; unit?: string; numeric?: boolean },
           { label: 'replicate', numeric: true },
           { label: problem.quantity.name, unit: unit.unit, numeric: true },
-        ].concat(problem.variables.map((variable) => ({ label: variable.name, unit: variable.unit, numeric: true }))),
+        ].concat(
+          problem.variables.map((variable) => ({ label: variable.name, unit: variable.unit, numeric: variable.type !== 'category' })),
+        ),
         rows: get_lines(scope, problem, get_picked(which, picked)).map((line): (Value | Cell)[] => {
           const value: Cell = { value: line.cell.value === null ? null : line.cell.value * unit.factor, command: line.cell.command };
           return [scope.names[line.optimizer], line.cell.replicate, value].concat(

@@ -77,7 +77,7 @@ export function make_fitness_figure(data: RunData, id = 'fitness'): Figure {
         }),
         make_line(look, 0, kBest, line(training.best), { width: 1.4 }),
       ];
-      if (tests.length > 0) {
+      if (incumbents.test.some(is_number)) {
         series.push({
           ...make_line(look, 1, kIncumbentTest, tests, { symbols: true, width: 1.4, step: 'end', style }),
           showAllSymbol: tests.length < 60,

@@ -6,7 +6,7 @@ import { shorten, shorten_all } from '../charts/names';
 import { make_line } from '../charts/parts';
 import { parse_csv } from '../csv';
 import type { RunData, WinnerFile } from '../data';
-import type { Cell, Column, Figure, FilesItem, Item, TableItem, Value } from '../model';
+import type { Cell, Column, Figure, FilesItem, Item, TableItem, TextItem, Value } from '../model';
 import { format_choice, get_shown, is_number, name_axis, times } from './quantities';
 
 const kMostRows = 1000; // of a table of a file
@@ -214,6 +214,25 @@ function make_csv_items(file: WinnerFile, index: number): Item[] {
   ];
 }
 
+// Says why the signals of a record are not shown. A record with files alone has no signals to show.
+function make_record_note(record: string): TextItem[] {
+  const [heading, ...rows] = parse_csv(record);
+  if (heading === undefined || heading.length < 2 || rows.length === 0) {
+    return [];
+  }
+  return [
+    {
+      kind: 'text',
+      id: 'winner-record-note',
+      title: 'Signals',
+      paragraphs: [
+        'The signals in winner-record.csv are not shown. They need at least two rows with a number in every column, ' +
+          'and the numbers in the first column must not fall.',
+      ],
+    },
+  ];
+}
+
 export function make_record_items(data: RunData): Item[] {
   const signals = data.record === null ? null : read_signals(data.record);
   const files: FilesItem | null =
@@ -228,6 +247,7 @@ export function make_record_items(data: RunData): Item[] {
         };
   return ([] as Item[]).concat(
     signals === null ? [] : make_signal_plots('winner-record', 'Signals', signals),
+    signals === null && data.record !== null ? make_record_note(data.record) : [],
     ...data.files.map((file, i) => (file.text === null ? [] : make_csv_items(file, i))),
     files === null ? [] : [files],
   );

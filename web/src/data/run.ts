@@ -1,0 +1,213 @@
+// The data of the page of a run.
+import type { PageBase, Quantity } from '../data';
+import type { DesignInfo, DistanceResponse, Signals, Sweep } from './arm';
+
+export interface RunData extends PageBase {
+  kind: 'run';
+  problem: string;
+  optimizer: string;
+  quantity: Quantity; // the minimised objective, or the weighted sum of several
+  logarithmic: boolean; // the quantity is itself a logarithm
+  training: Training;
+  variables: VariableHistory[];
+  test: TestErrors | null; // null before the run has ended
+  front: RunFront | null; // null if there is only one objective
+  requirements: RequirementLight[]; // for the winner on the test set; empty without a winner
+  headline: Headline;
+  limits: WinnerLimit[]; // the winner's constraints on the test set; empty without a winner
+  metrics: WinnerMetric[]; // the winner's on the test set; empty for an arm
+  failure_reasons: FailureReason[]; // of training evaluations, the most frequent first
+  record: string | null; // winner-record.csv: signals of the winner on the first test case
+  files: WinnerFile[]; // that this case left
+  arm: ArmEvidence | null; // null if the problem is not an arm
+}
+
+export interface WinnerLimit {
+  quantity: Quantity;
+  limit: number;
+  value: number | null; // null if no case has a number
+  is_met: boolean | null;
+}
+
+export interface WinnerMetric {
+  quantity: Quantity;
+  value: number | null;
+}
+
+export interface FailureReason {
+  reason: string;
+  count: number;
+}
+
+export interface WinnerFile {
+  name: string;
+  bytes: number;
+  type: string; // by its content: "image/png", "image/jpeg", "image/svg+xml", "text/csv", or "" for others
+  text: string | null; // of a CSV file
+  base64: string; // empty for a CSV file
+}
+
+export type VariableType = 'real' | 'integer' | 'category';
+
+// What the run recorded of its result and effort. The fields after `cases` are null without a winner.
+export interface Headline {
+  started: string; // "2026-01-31T12:00:00Z", or "" if it is not recorded
+  evaluations: number; // of training
+  cases: number; // simulated in training
+  value: number | null; // the winner's on the test set: an arm's mean error, or the objective
+  quantity: Quantity | null; // of `value`
+  failures: number | null; // test cases that an arm failed
+  test_cases: number | null;
+  total_torque_n_m: number | null;
+  times: RunTimes | null; // null if the run has none, as runs of version 1.0
+}
+
+// How long a run took, over the lives of its process that were not killed.
+export interface RunTimes {
+  wall_s: number;
+  cpu_s: number | null; // null if other processes simulated cases
+  lives: number;
+}
+
+// A quantity that must not exceed a limit on any test case, and the result.
+export interface RequirementLight {
+  quantity: Quantity;
+  limit: number;
+  value: number | null; // of the worst case
+  grade: 'met' | 'tight' | 'missed' | 'unknown'; // tight: met, within 10 % of the limit
+  binds: boolean; // nearest to its limit of all requirements, or furthest above it
+  is_constraint: boolean;
+}
+
+// The history by generations, or by blocks of consecutive evaluations if the optimizer has no
+// generations.
+export interface Training {
+  unit: 'generation' | 'evaluations';
+  schedule: string; // "fresh:1", "fixed:5", "coevolution:10"
+  budget: number; // cases
+  index: number[]; // the generation, or the number of the last evaluation of the block
+  cases: number[]; // spent of the budget at the end of each generation or block
+  best: (number | null)[];
+  mean: (number | null)[];
+  worst: (number | null)[];
+  failed: number[]; // evaluations without a number
+  incumbents: Incumbents;
+}
+
+// The incumbents of the run and their values on the test set.
+export interface Incumbents {
+  index: number[]; // as in Training
+  cases: number[];
+  training: (number | null)[];
+  test: (number | null)[];
+  test_set: string;
+  test_cases: number;
+  engine: string;
+}
+
+export interface VariableHistory {
+  name: string; // "joint_2.p"
+  unit: string;
+  type: VariableType;
+  choices: string[]; // the words of a category; its values are their places, from 0
+  lower: number;
+  upper: number;
+  start: number;
+  logarithmic: boolean;
+  winner: number | null;
+  best: (number | null)[]; // the value of the best design of each generation or block
+  q1: (number | null)[];
+  median: (number | null)[];
+  q3: (number | null)[];
+}
+
+export interface TestErrors {
+  set: string;
+  quantity: Quantity; // of the errors
+  engine: string;
+  failure_error: number | null; // a case with a larger error has failed
+  designs: {
+    name: string;
+    errors: (number | null)[];
+    failures: { case: number; error: number | null; reason: string; command: string }[];
+  }[];
+}
+
+export interface RunFront {
+  objectives: Quantity[];
+  points: { values: number[]; on_front: boolean; x: number[] }[];
+  winner: number | null; // index
+}
+
+export interface ArmEvidence {
+  designs: DesignInfo[];
+  // One row per number of the design. The values are in the order of `designs`.
+  parameters: { name: string; unit: string; is_variable: boolean; at_bound: string; values: (number | null)[] }[];
+  // The results of each design on the test set, and the published values.
+  results: {
+    design: string; // the id of one of `designs`
+    source: string; // "thesis, Table A.5", or "" if its file names none
+    mean_m: number | null;
+    median_m: number | null;
+    p95_m: number | null;
+    worst_m: number | null;
+    failures: number;
+    cases: number;
+    total_torque_n_m: number;
+    published_mean_m: number | null;
+    published_torque_n_m: number | null;
+    where: string;
+  }[];
+  response: DistanceResponse;
+  signals: Signals;
+  sweep: Sweep | null;
+  health: Health | null; // null without a winner and if nothing was simulated
+}
+
+// "watch" is worth a look, "bad" needs a remedy.
+export type HealthGrade = 'good' | 'watch' | 'bad';
+
+// How calmly the winner moves. src/report/evidence/health.hpp defines the measures. Saturation and
+// failures are those of the whole test set; ripple, efforts and moves are those of one case.
+export interface Health {
+  set: string;
+  cases: number; // of the set
+  case: string; // "test/2:17": the median case by the winner's error
+  failures: number;
+  failing: HealthGrade;
+  ripple_floor_hz: number; // only faster oscillations count
+  // The shares from which "watch" and "bad" begin, and the distance to a bound up to which a variable
+  // is near.
+  limits: { saturation: [number, number]; ripple: [number, number]; bound: number };
+  joints: JointHealth[];
+  moves: MoveHealth | null; // null if the case has no moves
+  bounds: {
+    grade: HealthGrade;
+    near: number; // variables near a bound
+    nearest: { name: string; bound: 'lower' | 'upper'; distance: number }[]; // the near ones or the nearest one; shares of the range
+  };
+}
+
+// A measure that cannot be computed is null, and so is its grade.
+export interface JointHealth {
+  name: string;
+  unit: string; // of efforts
+  saturated_share: number | null; // of the time
+  saturation: HealthGrade | null;
+  ripple_rms: number | null;
+  ripple_share: number | null; // of the larger effort limit
+  ripple_hz: number | null; // the dominant frequency
+  ripple: HealthGrade | null;
+  used_share: number | null; // the largest effort, as a share of the limit on its side
+}
+
+// The response of the tip to the moves that count (src/sim/tracking/response.hpp).
+export interface MoveHealth {
+  count: number;
+  overshoot_median: number; // shares of the move
+  overshoot_largest: number;
+  settling_median_s: number;
+  settling_largest_s: number;
+  settling_band: number; // share of the move
+  unsettled: number; // moves that end before the tip stays in the band; their time is the whole time after the arrival
+}
