@@ -165,8 +165,9 @@ std::string describe_rest(const OptimizeOptions& options, const RunRequest& requ
 }
 
 // Returns commands to try next. They begin with the program's name as the user typed it.
-std::string describe_next(const OptimizeOptions& options, const std::string& program,
-                          const std::filesystem::path& folder, const Style& style) {
+std::string describe_next(const OptimizeOptions& options, const RunRequest& request,
+                          const std::string& program, const Style& style) {
+  const std::filesystem::path& folder = request.folder;
   const auto winner = folder / "winner.toml";
   std::string text = "\n" + style.bold("Next") + "\n";
   if (path_exists(winner)) {
@@ -175,7 +176,9 @@ std::string describe_next(const OptimizeOptions& options, const std::string& pro
     for (const std::string& change : options.overrides.get()) {
       words.insert(words.end(), {"--set", change});
     }
-    words.insert(words.end(), {"--test-set", "3"});
+    if (!request.plan.problem.problem->description().has_single_case) {
+      words.insert(words.end(), {"--test-set", "3"});
+    }
     text += fmt::format("  {}\n", sanitize(quote_command(words)));
   }
   const std::vector<std::string> show = {program, "show", folder.string()};
@@ -233,7 +236,7 @@ int run_optimize(OptimizeOptions options, Session& session) {
   } else {
     const Style style = make_style(Stream::out, session.color);
     write_stdout(describe_result(*result, request.folder, style) +
-                 describe_next(options, session.command_line.front(), request.folder, style));
+                 describe_next(options, request, session.command_line.front(), style));
   }
   return get_result_code(*result);
 }

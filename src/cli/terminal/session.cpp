@@ -28,8 +28,8 @@ extern "C" void handle_signal(int number) {
   }
   stop.request(number == SIGINT ? StopReason::interrupted : StopReason::terminated);
   constexpr std::string_view kNotice =
-      "\narmwright: stopping when the simulations in progress are done; press Ctrl-C again to stop "
-      "at once\n";
+      "\narmwright: stopping soon, with all results so far on disk; press Ctrl-C again to stop at "
+      "once\n";
   if (number == SIGINT) {
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kNotice.data(), kNotice.size());
   }

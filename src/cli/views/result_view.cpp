@@ -22,7 +22,7 @@ struct RunFile {
   const char* what;
 };
 constexpr RunFile kRunFiles[] = {
-    {"winner.toml", "the winner, for evaluate and sweep"},
+    {"winner.toml", "the winner, for evaluate"},
     {"winner-record.csv", "signals of the winner on the first test case"},
     {"winner-trajectory.csv", "the winner's trajectory on the first test case"},
     {"front.csv", "the designs on the front, with their results on the validation set"},

@@ -84,13 +84,14 @@ json make_study_facts(const StudyPlan& plan) {
   add("Start", fmt::format("drawn from a box as wide as {} of the bounds, about the problem's own",
                            format_exact(plan.start_spread)));
   add("Engine", join_different(plan, describe_engine));
-  add("Validation set", join_different(plan, [](const StudyProblem& problem) {
-        const CaseSets& sets = problem.loaded.sets;
-        return fmt::format("{}: {} cases", sets.validation, sets.validation_cases);
+  const auto describe_set = [](const std::string& name, auto cases) {
+    return fmt::format("{}: {} {}", name, cases, cases == 1 ? "case" : "cases");
+  };
+  add("Validation set", join_different(plan, [&](const StudyProblem& problem) {
+        return describe_set(problem.loaded.sets.validation, problem.loaded.sets.validation_cases);
       }));
-  add("Test set", join_different(plan, [](const StudyProblem& problem) {
-        const CaseSets& sets = problem.loaded.sets;
-        return fmt::format("{}: {} cases", sets.test, sets.test_cases);
+  add("Test set", join_different(plan, [&](const StudyProblem& problem) {
+        return describe_set(problem.loaded.sets.test, problem.loaded.sets.test_cases);
       }));
   if (plan.constraint_tolerance > 0) {
     add("Constraint tolerance", format_exact(plan.constraint_tolerance));

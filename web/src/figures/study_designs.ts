@@ -77,6 +77,7 @@ function explain_axes(scope: Scope): string {
 type Drawing = { coord(point: number[]): number[]; getHeight(): number };
 
 const kUpright_px = 24; // axes closer than this have no room for numbers beside each other
+const kLevel_px = 120; // axes farther apart than this have room for their names beside each other
 
 // Makes one vertical axis per variable, with its bounds, and with the start as a mark.
 function make_axes(look: Look, variables: Variable[]): Part {
@@ -109,6 +110,7 @@ function make_axes(look: Look, variables: Variable[]): Part {
       const crowded = room < 44;
       // Numbers that are wider than the distance of the axes stand upright, and names below them.
       const is_upright = room < kUpright_px;
+      const is_level = room > kLevel_px;
       const number = (value: number, at_y: number, is_above: boolean): Part => ({
         type: 'text',
         x,
@@ -146,14 +148,14 @@ function make_axes(look: Look, variables: Variable[]): Part {
             type: 'text',
             x,
             y: bottom + (is_upright ? 44 : 22),
-            rotation: is_upright ? Math.PI / 2 : Math.PI / 5,
+            rotation: is_upright ? Math.PI / 2 : is_level ? 0 : Math.PI / 5,
             style: {
               text: shorten(variable.name, 22) + describe_axis(variable),
               fill: look.text,
               font: '10px ' + look.font,
-              textAlign: 'right',
+              textAlign: is_level ? 'center' : 'right',
               textVerticalAlign: 'middle',
-              width: is_upright ? Math.min(100, api.getHeight() - bottom - 46) : 100,
+              width: is_upright ? Math.min(100, api.getHeight() - bottom - 46) : is_level ? room - 12 : 100,
               overflow: 'truncate',
             },
           },
