@@ -21,11 +21,10 @@ class CartPole : public aw::Problem {
     aw::Description all;
     all.name = "cart-pole";
     all.summary = "Balance a pole on a cart";
+    // The search starts in the middle of the bounds, where the pole stands and the cart drifts.
     all.variables = {aw::real("k_position", "N/m", -50, 50), aw::real("k_speed", "N s/m", -50, 50),
-                     aw::real("k_angle", "N/rad", -200, 200),
-                     aw::real("k_turn", "N s/rad", -50, 50)};
-    all.variables[2].start = 60;  // without force, the pole falls
-    all.variables[3].start = 10;
+                     aw::real("k_angle", "N/rad", -80, 200),
+                     aw::real("k_turn", "N s/rad", -30, 50)};
     all.objectives = {{"cost"}};
     all.objectives[0].penalty = 1e4;
     all.metrics = {{"peak_force", "N"}};
