@@ -190,6 +190,30 @@ TEST_F(CliTrust, AProblemIsReadWithoutItsProgramAndRunsWithConsentOnly) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "PWNED"));
 }
 
+// Without cells and without a hash, the file may be a user's own, but not where the folder is named.
+TEST_F(CliTrust, AFolderThatHoldsOnlyAStudysFileIsNotOfTheUser) {
+  const std::filesystem::path received = folder_ / "received";
+  std::filesystem::create_directory(received);
+  const std::string study = "replicates = 2\nbudget = 20\n";
+  const std::string problem = "[[problem]]\nname = " + nlohmann::json(kProgram).dump() + "\n";
+  const std::string optimizer = "[[optimizer]]\nname = " + nlohmann::json(kProgram).dump() + "\n";
+  for (const std::string& text : {problem + "[[optimizer]]\nname = \"random\"\n",
+                                  "[[problem]]\nname = \"sphere\"\n" + optimizer}) {
+    std::ofstream(received / "study.toml") << study << text;
+    const std::vector<Words> all = {{"rerun", "received", "sphere/random/r01"},
+                                    {"cell", "received", "0"},
+                                    {"show", "received"},
+                                    {"status", "received"},
+                                    {"doctor", "received"}};
+    for (const Words& words : all) {
+      const Outcome outcome = run(words);
+      EXPECT_NE(outcome.exit_code, 0) << words[0] << outcome.out;
+      EXPECT_THAT(outcome.out + outcome.err, Not(HasSubstr("compare received/study.toml")));
+      EXPECT_FALSE(std::filesystem::exists(folder_ / "PWNED")) << words[0] << text;
+    }
+  }
+}
+
 TEST_F(CliTrust, JobsInheritTheConsent) {
   const std::string library = std::string(ARMWRIGHT_TEST_PLUGINS) + "/libgood.so";
   const Outcome script =

@@ -83,7 +83,9 @@ UserProgram make_program(const std::string& command, const ServerLimits& limits,
   } else if (!programs.may_describe) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("problem '{}': its description is not recorded (program.description), "
-                            "and this command starts no program",
+                            "and this command starts no program. The file of a study of your own "
+                            "must have another name than study.toml, or lie in another folder than "
+                            "the cells of a study",
                             sanitize(command)));
   } else {
     program.description = is_exec ? describe_program(words) : describe_library(command, limits);

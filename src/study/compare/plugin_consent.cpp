@@ -161,9 +161,9 @@ std::vector<NamedOptimizer> list_programs(std::span<const StudyProblem> problems
       for (const auto& [file, hash] : loaded.input_hashes) {
         programs.back().options.push_back(fmt::format("{} {}", file, hash));
       }
-      if (is_command && resolved.at("command").contains("input")) {  // may be a script
+      if (is_command) {  // texts of input files and words of categories may be scripts
         programs.back().options.push_back(
-            fmt::format("input {}", calc_sha256_hex(resolved["command"]["input"].dump())));
+            fmt::format("configuration {}", calc_sha256_hex(resolved.dump())));
       }
     }
   }

@@ -152,9 +152,24 @@ std::string make_body(const StudyPlan& plan) {
   return text + make_targets(plan);
 }
 
+// Throws Error{bad_data} if the folder's file is a plan that armwright has not recorded. A folder may
+// come from anybody, and nobody agreed to run what such a plan names.
+void check_plan_is_recorded(const std::filesystem::path& folder) {
+  const auto file = folder / kPlanFile;
+  if (!ConfigTable::load(file).has("plan_sha256")) {
+    throw Error(
+        ErrorKind::bad_data,
+        fmt::format("{}: cannot be read as a recorded plan: it has no plan_sha256, so it was "
+                    "edited, or it is a plan of your own. Check the study with 'armwright "
+                    "doctor {}', or choose another folder with --out or --new",
+                    file.string(), folder.string()));
+  }
+}
+
 StudyRequest make_folder_request(const std::filesystem::path& folder, PluginUse plugins) {
   check_study_folder(folder);
   FolderChecksums(folder).check(kPlanFile);
+  check_plan_is_recorded(folder);
   StudyRequest request;
   request.file = (folder / kPlanFile).string();
   request.plugins = plugins;
@@ -313,13 +328,7 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text,
                          FolderChecksums& checksums) {
   const auto file = path() / kPlanFile;
   checksums.check(kPlanFile);
-  if (!ConfigTable::load(file).has("plan_sha256")) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("{}: cannot be read as a recorded plan (damaged, or edited): it has no "
-                            "plan_sha256. Check the study with 'armwright doctor {}', or choose "
-                            "another folder with --out or --new",
-                            file.string(), path().string()));
-  }
+  check_plan_is_recorded(path());
   check_plan_hash(file);
   json recorded = json::parse(ConfigTable::load(file).to_json());
   json now = json::parse(ConfigTable::parse(text, file.string()).to_json());

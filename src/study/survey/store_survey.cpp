@@ -147,6 +147,9 @@ class StoreSurveyor {
     check_record(kStudyRecord, [&](const std::filesystem::path& file) {
       const std::string fault = find_toml_fault(file);
       if (fault.empty()) {
+        if (!ConfigTable::load(file).has("plan_sha256")) {
+          return std::string("it has no plan_sha256, so it is not the plan that began this study");
+        }
         check_plan_hash(file);
         survey_.planned_cells = count_cells(file);
       }

@@ -150,15 +150,18 @@ TEST_F(PluginConsent, AnOptionThatWritesAFileNeedsConsent) {
               HasSubstr("nlopt:cobyla, which writes to a file (log="));
 }
 
-TEST_F(PluginConsent, ACommandIsKnownByItsWordsAndByTheInputFilesThatItsProblemWrites) {
-  const auto list = [&](const std::string& script) {
+TEST_F(PluginConsent, ACommandIsKnownByItsWordsAndByAllThatItsProblemSays) {
+  const auto list = [&](const std::string& script, const std::string& word = "none") {
     const auto file = temporary_ / "p.toml";
     write_file_atomically(file,
                           "kind = \"command\"\ncommand.run = \"host:sh script\"\n"
                           "[[command.input]]\nfile = \"script\"\ntext = '" +
                               script +
                               "'\n[[variable]]\nname = \"x\"\nlower = 0\n"
-                              "upper = 1\n[[objective]]\nname = \"f\"\n"
+                              "upper = 1\n[[variable]]\nname = \"mode\"\ntype = \"category\"\n"
+                              "choices = [\"" +
+                              word +
+                              "\", \"other\"]\n[[objective]]\nname = \"f\"\n"
                               "exit_code = true\n");
     StudyProblem problem;
     problem.loaded = load_problem(file.string());
@@ -168,6 +171,7 @@ TEST_F(PluginConsent, ACommandIsKnownByItsWordsAndByTheInputFilesThatItsProblemW
   ASSERT_EQ(first.size(), 1U) << "the name of a host program is no excuse for a command";
   EXPECT_EQ(first[0].options, list("exit 3")[0].options);
   EXPECT_NE(first[0].options, list("rm -r ~")[0].options);
+  EXPECT_NE(first[0].options, list("exit 3", "rm -r ~")[0].options);
 }
 
 TEST_F(PluginConsent, TheMemoryIsPrivateAndMayBeMissing) {
