@@ -70,12 +70,10 @@ class CommandServer final : public CaseServer {
  public:
   explicit CommandServer(std::shared_ptr<const CommandPlan> plan) : plan_(std::move(plan)) {}
 
-  std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
-    std::vector<CaseAnswer> answers;
+  void answer(std::span<const CaseJob> jobs, std::vector<CaseAnswer>& answers) override {
     for (const CaseJob& job : jobs) {
       answers.push_back(run(job));
     }
-    return answers;
   }
 
  private:

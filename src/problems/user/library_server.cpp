@@ -271,15 +271,13 @@ class LibraryServer final : public CaseServer {
     check_same_description(name, recorded, process_.description());
   }
 
-  std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
-    std::vector<CaseAnswer> answers;
+  void answer(std::span<const CaseJob> jobs, std::vector<CaseAnswer>& answers) override {
     answers.reserve(jobs.size());
     while (!jobs.empty()) {
       const std::size_t count = std::min(jobs.size(), NativeCaller::kMostQuestions);
       answer_some(jobs.first(count), answers);
       jobs = jobs.subspan(count);
     }
-    return answers;
   }
 
   CaseRecord record(const CaseJob& job) override {

@@ -60,24 +60,13 @@ class ProgramServer final : public CaseServer {
     child_.limit_memory(limits_.memory_mib);
   }
 
-  std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
-    std::vector<CaseAnswer> answers;
+  void answer(std::span<const CaseJob> jobs, std::vector<CaseAnswer>& answers) override {
     ++id_;
     // Several jobs take little time together, or each is asked for alone.
-    try {
-      converse(make_question(description_, "evaluate", id_, jobs), [&](const json& message) {
-        read_answers(message, description_, id_, jobs.size() - answers.size(), answers);
-        return answers.size() == jobs.size();
-      });
-    } catch (const ServerFailure& failure) {
-      if (failure.status() != EvaluationStatus::timed_out || jobs.size() == 1) {
-        throw;
-      }
-      throw ServerFailure(fmt::format("sent {} of {} answers and then {}", answers.size(),
-                                      jobs.size(), failure.what()),
-                          failure.status(), failure.details());
-    }
-    return answers;
+    converse(make_question(description_, "evaluate", id_, jobs), [&](const json& message) {
+      read_answers(message, description_, id_, jobs.size() - answers.size(), answers);
+      return answers.size() == jobs.size();
+    });
   }
 
   CaseRecord record(const CaseJob& job) override {

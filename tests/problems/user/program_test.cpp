@@ -214,8 +214,20 @@ TEST(ProgramProblem, TooFewAnswersToAQuestionAreToldAndAskedForAgain) {
   EXPECT_EQ(outcomes.at(0).error, 14);
   EXPECT_EQ(outcomes.at(1).error, 4.5 * 4.5 + 4);
   EXPECT_THAT(find_warnings(*loaded.problem)->take(),
-              ElementsAre("the program sent 1 of 2 answers and then has been silent for 1 s "
-                          "(program.time_limit_s); each case is asked for again, alone"));
+              ElementsAre("the program did not answer all cases of a question; it sent 1 of 2 "
+                          "answers and then has been silent for 1 s (program.time_limit_s); each "
+                          "case is asked for again, alone"));
+}
+
+TEST(ProgramProblem, TooFewAnswersAreToldOnceHoweverManyThereWere) {
+  const LoadedProblem loaded = load("too-few-together", {"program.time_limit_s=0.3"});
+  std::vector<CaseJob> jobs = {{.x = kGood, .block = &kFirstCase},
+                               {.x = kBad, .block = &kFirstCase}};
+  for (int turn = 0; turn < 2; ++turn) {
+    loaded.problem->simulate(jobs);
+    jobs.insert(jobs.begin(), jobs.front());
+  }
+  EXPECT_THAT(find_warnings(*loaded.problem)->take(), testing::SizeIs(1));
 }
 
 TEST(ProgramProblem, WhatItStartedIsKilledWithIt) {
