@@ -19,6 +19,7 @@
 #include "process/json_message.hpp"
 #include "process/line_process.hpp"
 #include "process/output_log.hpp"
+#include "process/stop_scope.hpp"
 
 namespace armwright {
 namespace {
@@ -137,6 +138,7 @@ class CommandServer final : public CaseServer {
     const auto fail = [&](EvaluationStatus status, std::string_view what,
                           const std::string& found = "") {
       CaseAnswer answer;
+      check_work_stop();  // what stops this process may have stopped the command, too
       answer.status = status;
       answer.reason = fmt::format("the command {}", what);
       answer.details = found + describe_printed(log.last_lines());
@@ -150,6 +152,9 @@ class CommandServer final : public CaseServer {
       const bool reads_exit = std::ranges::any_of(plan_->readings, [](const ResultReading& one) {
         return one.kind == ResultReading::Kind::exit_code;
       });
+      if (!ending.exit_code) {
+        await_work_stop();
+      }
       if (!ending.exit_code || (*ending.exit_code != 0 && !reads_exit)) {
         return fail(EvaluationStatus::failed, ending.how);
       }

@@ -198,6 +198,7 @@ class LibraryProcess {
       description_ = read_user_description(read_message(text));
       has_batches_ = reader.get<bool>();
     } catch (const ServerFailure& failure) {
+      await_work_stop();
       fail(fmt::format("{} while it was opened", failure.what()));
     } catch (const ProtocolError& error) {
       fail(error.what());

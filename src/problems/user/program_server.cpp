@@ -15,6 +15,7 @@
 #include "process/json_message.hpp"
 #include "process/line_process.hpp"
 #include "process/output_log.hpp"
+#include "process/stop_scope.hpp"
 
 namespace armwright {
 namespace {
@@ -44,6 +45,7 @@ UserDescription ask_description(LineProcess& child, const OutputLog& log, const 
     fault = fmt::format("{} before it described itself. It must flush its output after each line",
                         error.what());
   } catch (const LineProcessFailure& error) {
+    await_work_stop();
     fault = fmt::format("{} before it described itself", error.what());
   }
   throw Error(ErrorKind::bad_data, fmt::format("problem '{}': it {}{}", sanitize(name), fault,

@@ -17,6 +17,7 @@
 #include "problems/user/case_messages.hpp"
 #include "problems/user/server_pool.hpp"
 #include "process/json_message.hpp"
+#include "process/stop_scope.hpp"
 
 namespace armwright {
 namespace {
@@ -106,6 +107,7 @@ class UserProblem final : public Problem {
       pool_.give_back(std::move(server));
       return record;
     } catch (const ServerFailure& failure) {
+      await_work_stop();
       fail(fmt::format("it {}, asked for the record of a case", failure.what()));
     } catch (const ProtocolError& error) {
       fail(fmt::format("it {}", error.what()));
@@ -163,6 +165,7 @@ class UserProblem final : public Problem {
         ask(jobs, outcomes, true);
         return;
       }
+      await_work_stop();
       const std::string reason = fmt::format("the program {}", failure.what());
       warn(reason, failure.details());
       outcomes.push_back(make_failure(jobs.front(), failure.status(), reason));

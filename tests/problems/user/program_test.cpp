@@ -11,6 +11,7 @@
 #include "base/temporary_folder.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "problems/user/user_problem.hpp"
+#include "process/stop_scope.hpp"
 #include "wait_until.hpp"
 
 namespace armwright {
@@ -228,6 +229,24 @@ TEST(ProgramProblem, TooFewAnswersAreToldOnceHoweverManyThereWere) {
     jobs.insert(jobs.begin(), jobs.front());
   }
   EXPECT_THAT(find_warnings(*loaded.problem)->take(), testing::SizeIs(1));
+}
+
+// The stop arrives after the second server has died, the last moment before the case is recorded.
+TEST(ProgramProblem, ADeathWithTheStopOfTheRunIsNoFailedCase) {
+  const TemporaryFolder folder;
+  const auto file = folder / "pids";
+  const LoadedProblem loaded = load("dies " + file.string());
+  StopSignal stop;
+  stop.set_lookout([&] {
+    std::ifstream pids(file);
+    pid_t first = 0;
+    pid_t second = 0;
+    if (pids >> first >> second && kill(second, 0) != 0) {
+      stop.request(StopReason::terminated);
+    }
+  });
+  const StopScope scope(&stop);
+  EXPECT_THROW(evaluate(loaded, kBad), WorkStopped);
 }
 
 TEST(ProgramProblem, WhatItStartedIsKilledWithIt) {
