@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -65,6 +66,13 @@ void write_plainly(const std::filesystem::path& file, const std::string& text) {
   if (!stream) {
     fail_io(file, "write", errno);
   }
+}
+
+// Returns whether a signal killed the command, or a process whose end it passes on as shells do.
+bool is_death_by_signal(const std::optional<int>& exit_code) {
+  constexpr int kShellBase = 128;
+  constexpr int kLastSignal = 31;
+  return !exit_code || (*exit_code > kShellBase && *exit_code <= kShellBase + kLastSignal);
 }
 
 class CommandServer final : public CaseServer {
@@ -152,7 +160,7 @@ class CommandServer final : public CaseServer {
       const bool reads_exit = std::ranges::any_of(plan_->readings, [](const ResultReading& one) {
         return one.kind == ResultReading::Kind::exit_code;
       });
-      if (!ending.exit_code) {
+      if (is_death_by_signal(ending.exit_code)) {
         await_work_stop();
       }
       if (!ending.exit_code || (*ending.exit_code != 0 && !reads_exit)) {

@@ -96,7 +96,7 @@ TEST(CommandProblem, TheExitCodeCanBeTheResult) {
 
 // The stop arrives when the command has ended; after a death by a signal even later.
 TEST(CommandProblem, ADeathWithTheStopOfTheRunIsNoFailedCase) {
-  for (const auto& [end, looks] : {std::pair{"kill -TERM $$", 3}, {"exit 143", 1}}) {
+  for (const auto& [end, looks] : {std::pair{"kill -TERM $$", 3}, {"exit 143", 3}, {"exit 4", 1}}) {
     const ProblemFolder folder;
     folder.write("p.toml", make_problem(std::string("echo $$ > '{folder}/pid'; ") + end + "\n",
                                         "regex = '(1)'\n"));
