@@ -39,7 +39,7 @@ constexpr std::int64_t kMostBudget = 1'000'000'000'000;
 constexpr std::uint32_t kMostJobs = 4096;
 constexpr double kLongest_s = 1e9;  // as of --time-limit
 
-// A request in which fields that its author's header lacked are zero.
+// Returns the request. Fields that the header of the host program does not have are zero.
 struct armwright_run_request read_request(const struct armwright_run_request* raw) {
   constexpr std::size_t kFirstSize = sizeof(struct armwright_run_request);
   if (raw == nullptr || raw->struct_size < kFirstSize) {

@@ -16,10 +16,13 @@ class StopSignal {
  public:
   using Clock = std::chrono::steady_clock;  // monotonic: setting the wall clock has no effect
 
-  // Requests the stop. Safe in a signal handler. The first reason counts.
+  // Requests the stop. Safe in a signal handler. The first reason counts, but every other reason
+  // replaces a time limit, which lets work in progress end (check_work_stop()).
   void request(StopReason reason) {
-    StopReason none = StopReason::none;
-    reason_.compare_exchange_strong(none, reason);
+    StopReason before = StopReason::none;
+    if (!reason_.compare_exchange_strong(before, reason) && before == StopReason::time_limit) {
+      reason_.compare_exchange_strong(before, reason);
+    }
   }
   // Sets the time of a stop. Call it before the run starts.
   void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }

@@ -28,22 +28,23 @@ std::optional<ProcessMemory> measure_memory(const std::string& process) {
 
 namespace {
 
-// Appends a process and its descendants.
-void list_tree(pid_t process, std::vector<pid_t>& tree) {
+// Returns a process and its descendants. Has the files of one process open at a time, however deep
+// the tree is.
+std::vector<pid_t> list_tree(pid_t process) {
   constexpr std::size_t kMostProcesses = 10'000;
-  if (tree.size() == kMostProcesses) {
-    return;
-  }
-  tree.push_back(process);
-  std::error_code ignored;  // the process may end at any time
-  const std::filesystem::directory_iterator threads("/proc/" + std::to_string(process) + "/task",
-                                                    ignored);
-  for (auto thread = begin(threads); thread != end(threads); thread.increment(ignored)) {
-    std::ifstream children(thread->path() / "children");
-    for (pid_t child = 0; children >> child;) {
-      list_tree(child, tree);
+  std::vector<pid_t> tree = {process};
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    std::error_code ignored;  // the process may end at any time
+    const std::filesystem::directory_iterator threads("/proc/" + std::to_string(tree[i]) + "/task",
+                                                      ignored);
+    for (auto thread = begin(threads); thread != end(threads); thread.increment(ignored)) {
+      std::ifstream children(thread->path() / "children");
+      for (pid_t child = 0; tree.size() < kMostProcesses && children >> child;) {
+        tree.push_back(child);
+      }
     }
   }
+  return tree;
 }
 
 // Returns the resident memory where a page of n processes counts 1/n; nothing if the process has
@@ -63,8 +64,7 @@ std::optional<double> measure_share_mib(pid_t process) {
 }  // namespace
 
 double measure_tree_mib(pid_t process, double exact_above_mib) {
-  std::vector<pid_t> tree;
-  list_tree(process, tree);
+  const std::vector<pid_t> tree = list_tree(process);
   std::vector<double> resident_mib;
   for (const pid_t one : tree) {
     const auto memory = measure_memory(std::to_string(one));

@@ -1,5 +1,7 @@
 #include "process/stop_scope.hpp"
 
+#include <chrono>
+#include <thread>
 #include <utility>
 
 namespace armwright {
@@ -22,6 +24,16 @@ StopSignal* get_work_stop() {
 void check_work_stop() {
   if (t_stop != nullptr && t_stop->requested() && t_stop->reason() != StopReason::time_limit) {
     throw WorkStopped{};
+  }
+}
+
+void await_work_stop() {
+  constexpr int kChecks = 10;
+  constexpr std::chrono::milliseconds kPause{10};
+  check_work_stop();
+  for (int i = 0; t_stop != nullptr && i < kChecks; ++i) {
+    std::this_thread::sleep_for(kPause);
+    check_work_stop();
   }
 }
 

@@ -131,6 +131,29 @@ TEST_P(InterruptedProblem, ACaseInProgressEndsWithTheRunAndIsSimulatedAgain) {
   expect_same_run(folder_ / "whole", folder_ / "stopped");
 }
 
+// As job systems end a job: the processes of the problem die while armwright has not yet seen the
+// signal.
+TEST_P(InterruptedProblem, ASignalToEveryProcessOfTheJobFailsNoCase) {
+  write_text(gate_, "");
+  ASSERT_EQ(run_program(folder_.path(), make_words("whole"), make_environment()).exit_code, 0);
+  std::filesystem::remove(gate_);
+  Program program(folder_.path(), make_words("stopped"), make_environment());
+  ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(folder_ / "gate.reached"); }));
+  program.send(SIGSTOP);
+  for (const int process : list_processes("interrupted")) {
+    kill(process, SIGTERM);
+  }
+  EXPECT_TRUE(wait_until([] { return list_processes("interrupted").size() == 1; }));
+  program.send(SIGCONT);
+  const Outcome stopped = program.wait();
+  EXPECT_EQ(stopped.exit_code, 75) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("stopped by a signal; nothing is lost. To resume:"));
+  write_text(gate_, "");
+  const Outcome last = run_program(folder_.path(), make_words("stopped"), make_environment());
+  ASSERT_EQ(last.exit_code, 0) << last.err;
+  expect_same_run(folder_ / "whole", folder_ / "stopped");
+}
+
 INSTANTIATE_TEST_SUITE_P(Ways, InterruptedProblem, testing::Values("program", "library", "command"),
                          [](const auto& test) { return std::string(test.param); });
 

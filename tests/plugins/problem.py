@@ -90,6 +90,10 @@ def compute(x, n, word):
             sys.exit(3)
         if fault == "crash":
             os.kill(os.getpid(), signal.SIGSEGV)
+        if fault == "dies":
+            with open(sys.argv[2], "a") as file:
+                file.write(f"{os.getpid()}\n")
+            os.kill(os.getpid(), signal.SIGTERM)
         if fault == "late":
             time.sleep(600)
         if fault == "nan":

@@ -9,8 +9,7 @@ namespace armwright {
 
 // Appends the error of one case, NaN if it has none. The evaluation gets the status and the reason of
 // the first case that is not ok, or of the first one that was abandoned, because the numbers are then
-// only bounds. Returns whether the case has
-// an error. Call it in the order of the cases.
+// only bounds. Returns whether the case has an error. Call it in the order of the cases.
 inline bool add_outcome(const CaseOutcome& outcome, Evaluation& evaluation) {
   const bool is_first_abandoned = outcome.status == EvaluationStatus::abandoned &&
                                   evaluation.status != EvaluationStatus::abandoned;

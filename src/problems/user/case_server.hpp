@@ -49,9 +49,10 @@ class ServerFailure : public std::runtime_error {
 class CaseServer {
  public:
   virtual ~CaseServer() = default;
-  // Returns one answer per job. All jobs belong to one block. Throws ServerFailure, and
-  // ProtocolError if the server breaks its contract, which ends the run.
-  virtual std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) = 0;
+  // Appends one answer per job to `answers`, which is empty. All jobs belong to one block. Throws
+  // ServerFailure, after the answers that came before it, and ProtocolError if the server breaks its
+  // contract, which ends the run.
+  virtual void answer(std::span<const CaseJob> jobs, std::vector<CaseAnswer>& answers) = 0;
   // Returns what a case leaves beside its numbers. Throws as answer() does.
   virtual CaseRecord record(const CaseJob& /*job*/) { return {}; }
 };

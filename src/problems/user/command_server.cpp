@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -19,6 +20,7 @@
 #include "process/json_message.hpp"
 #include "process/line_process.hpp"
 #include "process/output_log.hpp"
+#include "process/stop_scope.hpp"
 
 namespace armwright {
 namespace {
@@ -66,16 +68,21 @@ void write_plainly(const std::filesystem::path& file, const std::string& text) {
   }
 }
 
+// Returns whether a signal killed the command, or a process whose end it passes on as shells do.
+bool is_death_by_signal(const std::optional<int>& exit_code) {
+  constexpr int kShellBase = 128;
+  constexpr int kLastSignal = 31;
+  return !exit_code || (*exit_code > kShellBase && *exit_code <= kShellBase + kLastSignal);
+}
+
 class CommandServer final : public CaseServer {
  public:
   explicit CommandServer(std::shared_ptr<const CommandPlan> plan) : plan_(std::move(plan)) {}
 
-  std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
-    std::vector<CaseAnswer> answers;
+  void answer(std::span<const CaseJob> jobs, std::vector<CaseAnswer>& answers) override {
     for (const CaseJob& job : jobs) {
       answers.push_back(run(job));
     }
-    return answers;
   }
 
  private:
@@ -139,6 +146,7 @@ class CommandServer final : public CaseServer {
     const auto fail = [&](EvaluationStatus status, std::string_view what,
                           const std::string& found = "") {
       CaseAnswer answer;
+      check_work_stop();  // what stops this process may have stopped the command, too
       answer.status = status;
       answer.reason = fmt::format("the command {}", what);
       answer.details = found + describe_printed(log.last_lines());
@@ -152,6 +160,9 @@ class CommandServer final : public CaseServer {
       const bool reads_exit = std::ranges::any_of(plan_->readings, [](const ResultReading& one) {
         return one.kind == ResultReading::Kind::exit_code;
       });
+      if (is_death_by_signal(ending.exit_code)) {
+        await_work_stop();
+      }
       if (!ending.exit_code || (*ending.exit_code != 0 && !reads_exit)) {
         return fail(EvaluationStatus::failed, ending.how);
       }

@@ -198,6 +198,7 @@ class LibraryProcess {
       description_ = read_user_description(read_message(text));
       has_batches_ = reader.get<bool>();
     } catch (const ServerFailure& failure) {
+      await_work_stop();
       fail(fmt::format("{} while it was opened", failure.what()));
     } catch (const ProtocolError& error) {
       fail(error.what());
@@ -271,15 +272,13 @@ class LibraryServer final : public CaseServer {
     check_same_description(name, recorded, process_.description());
   }
 
-  std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
-    std::vector<CaseAnswer> answers;
+  void answer(std::span<const CaseJob> jobs, std::vector<CaseAnswer>& answers) override {
     answers.reserve(jobs.size());
     while (!jobs.empty()) {
       const std::size_t count = std::min(jobs.size(), NativeCaller::kMostQuestions);
       answer_some(jobs.first(count), answers);
       jobs = jobs.subspan(count);
     }
-    return answers;
   }
 
   CaseRecord record(const CaseJob& job) override {

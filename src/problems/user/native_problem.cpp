@@ -176,8 +176,7 @@ class NativeServer final : public CaseServer {
   NativeServer(const struct armwright_user_problem& problem, UserDescription description)
       : caller_(problem), description_(std::move(description)) {}
 
-  std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
-    std::vector<CaseAnswer> answers;
+  void answer(std::span<const CaseJob> jobs, std::vector<CaseAnswer>& answers) override {
     while (!jobs.empty()) {
       const auto some = jobs.first(std::min(jobs.size(), NativeCaller::kMostQuestions));
       std::vector<armwright_case> questions;
@@ -193,7 +192,6 @@ class NativeServer final : public CaseServer {
       }
       jobs = jobs.subspan(some.size());
     }
-    return answers;
   }
 
   CaseRecord record(const CaseJob& job) override {

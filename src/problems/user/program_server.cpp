@@ -15,6 +15,7 @@
 #include "process/json_message.hpp"
 #include "process/line_process.hpp"
 #include "process/output_log.hpp"
+#include "process/stop_scope.hpp"
 
 namespace armwright {
 namespace {
@@ -44,6 +45,7 @@ UserDescription ask_description(LineProcess& child, const OutputLog& log, const 
     fault = fmt::format("{} before it described itself. It must flush its output after each line",
                         error.what());
   } catch (const LineProcessFailure& error) {
+    await_work_stop();
     fault = fmt::format("{} before it described itself", error.what());
   }
   throw Error(ErrorKind::bad_data, fmt::format("problem '{}': it {}{}", sanitize(name), fault,
@@ -60,24 +62,13 @@ class ProgramServer final : public CaseServer {
     child_.limit_memory(limits_.memory_mib);
   }
 
-  std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
-    std::vector<CaseAnswer> answers;
+  void answer(std::span<const CaseJob> jobs, std::vector<CaseAnswer>& answers) override {
     ++id_;
     // Several jobs take little time together, or each is asked for alone.
-    try {
-      converse(make_question(description_, "evaluate", id_, jobs), [&](const json& message) {
-        read_answers(message, description_, id_, jobs.size() - answers.size(), answers);
-        return answers.size() == jobs.size();
-      });
-    } catch (const ServerFailure& failure) {
-      if (failure.status() != EvaluationStatus::timed_out || jobs.size() == 1) {
-        throw;
-      }
-      throw ServerFailure(fmt::format("sent {} of {} answers and then {}", answers.size(),
-                                      jobs.size(), failure.what()),
-                          failure.status(), failure.details());
-    }
-    return answers;
+    converse(make_question(description_, "evaluate", id_, jobs), [&](const json& message) {
+      read_answers(message, description_, id_, jobs.size() - answers.size(), answers);
+      return answers.size() == jobs.size();
+    });
   }
 
   CaseRecord record(const CaseJob& job) override {

@@ -17,6 +17,7 @@
 #include "problems/user/case_messages.hpp"
 #include "problems/user/server_pool.hpp"
 #include "process/json_message.hpp"
+#include "process/stop_scope.hpp"
 
 namespace armwright {
 namespace {
@@ -106,6 +107,7 @@ class UserProblem final : public Problem {
       pool_.give_back(std::move(server));
       return record;
     } catch (const ServerFailure& failure) {
+      await_work_stop();
       fail(fmt::format("it {}, asked for the record of a case", failure.what()));
     } catch (const ProtocolError& error) {
       fail(fmt::format("it {}", error.what()));
@@ -134,9 +136,10 @@ class UserProblem final : public Problem {
   void ask(std::span<const CaseJob> jobs, std::vector<CaseOutcome>& outcomes,
            bool is_new = false) const {
     auto server = take_server(is_new);
+    std::vector<CaseAnswer> answers;
     try {
       const auto begin = std::chrono::steady_clock::now();
-      std::vector<CaseAnswer> answers = server->answer(jobs);
+      server->answer(jobs, answers);
       learn_time(std::chrono::steady_clock::now() - begin, jobs.size());
       pool_.give_back(std::move(server));
       assert(answers.size() == jobs.size());
@@ -148,8 +151,10 @@ class UserProblem final : public Problem {
       if (jobs.size() > 1) {
         if (failure.status() == EvaluationStatus::timed_out) {
           warnings_.add(
-              fmt::format("the program {}; each case is asked for again, alone", failure.what()),
-              failure.details());
+              "the program did not answer all cases of a question",
+              fmt::format(
+                  "; it sent {} of {} answers and then {}; each case is asked for again, alone{}",
+                  answers.size(), jobs.size(), failure.what(), failure.details()));
         }
         for (const CaseJob& job : jobs) {
           ask({&job, 1}, outcomes);
@@ -160,6 +165,7 @@ class UserProblem final : public Problem {
         ask(jobs, outcomes, true);
         return;
       }
+      await_work_stop();
       const std::string reason = fmt::format("the program {}", failure.what());
       warn(reason, failure.details());
       outcomes.push_back(make_failure(jobs.front(), failure.status(), reason));

@@ -20,8 +20,8 @@ class BrokenProtocol : public Error {
   using Error::Error;
 };
 
-// What the user is to hear of failed cases beside their recorded reasons: what the program printed
-// last, and what a command has written in place of a number. Thread-safe.
+// Warnings about failed cases, which say more than their recorded reasons: the last lines that the
+// program printed, and the text that a command has written in place of a number. Thread-safe.
 class ProblemWarnings {
  public:
   // Adds a warning, unless there has been one with the same reason or there have been many.
@@ -60,8 +60,8 @@ ProblemWarnings* find_warnings(const Problem& problem);
 // Throws Error{usage}, which says what to do, if a problem of make_user_problem() has no server.
 void require_server(const Problem& problem);
 
-// Returns the evaluation of a decision vector on the only case of `job.block`, where somebody else
-// has simulated it and hands over the answer. The problem must be one of make_user_problem(). Throws
+// Returns the evaluation of a decision vector on the only case of `job.block` from an answer that
+// was made outside of this program. The problem must be one of make_user_problem(). Throws
 // Error{bad_data} if its residuals do not fit its objective.
 Evaluation make_evaluation(const Problem& problem, const CaseJob& job, CaseAnswer answer);
 

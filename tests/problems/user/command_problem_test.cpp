@@ -1,5 +1,6 @@
 // Problems that are a command per case: places, results, limits, folders, and what is refused.
 #include <gmock/gmock.h>
+#include <signal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@
 #include "problems/problem_folder.hpp"
 #include "problems/user/user_problem.hpp"
 #include "process/process_watch.hpp"
+#include "process/stop_scope.hpp"
 #include "wait_until.hpp"
 
 namespace armwright {
@@ -90,6 +92,27 @@ TEST(CommandProblem, TheExitCodeCanBeTheResult) {
   EXPECT_THAT(run("exit {n}\n", "exit_code = true\n").objectives, ElementsAre(3));
   const Evaluation killed = run("kill -9 $$\n", "exit_code = true\n");
   EXPECT_EQ(killed.reason, "the command was killed by signal 9 (Killed)");
+}
+
+// The stop arrives when the command has ended; after a death by a signal even later.
+TEST(CommandProblem, ADeathWithTheStopOfTheRunIsNoFailedCase) {
+  for (const auto& [end, looks] : {std::pair{"kill -TERM $$", 3}, {"exit 143", 3}, {"exit 4", 1}}) {
+    const ProblemFolder folder;
+    folder.write("p.toml", make_problem(std::string("echo $$ > '{folder}/pid'; ") + end + "\n",
+                                        "regex = '(1)'\n"));
+    const LoadedProblem loaded = folder.load("p.toml");
+    StopSignal stop;
+    int left = looks;
+    stop.set_lookout([&] {
+      std::ifstream file(folder.path("pid"));
+      pid_t pid = 0;
+      if (file >> pid && kill(pid, 0) != 0 && --left == 0) {
+        stop.request(StopReason::terminated);
+      }
+    });
+    const StopScope scope(&stop);
+    EXPECT_THROW(evaluate(loaded, {0, 0, 0}), WorkStopped) << end;
+  }
 }
 
 TEST(CommandProblem, AValueNeverAddsAWord) {

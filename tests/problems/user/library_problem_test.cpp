@@ -195,6 +195,19 @@ TEST(LibraryProblem, AnEndlessCaseIsKilledAfterItsTimeLimit) {
   EXPECT_THAT(outcome.reason, HasSubstr("has been silent for 0.2 s (program.time_limit_s)"));
 }
 
+TEST(LibraryProblem, TooFewAnswersToAQuestionAreToldAndAskedForAgain) {
+  const auto problem = make_library("faulty", {.time_limit_s = 0.2});
+  const std::vector<double> good = {19};
+  const std::vector<double> endless = {3};
+  const std::vector<CaseJob> jobs = {{.x = good, .block = &kLibraryCases, .number = 0},
+                                     {.x = endless, .block = &kLibraryCases, .number = 0}};
+  const auto outcomes = problem->simulate(jobs);
+  EXPECT_EQ(outcomes.at(0).error, 19);
+  EXPECT_EQ(outcomes.at(1).status, EvaluationStatus::timed_out);
+  EXPECT_THAT(find_warnings(*problem)->take(),
+              ElementsAre(HasSubstr("of 2 answers and then has been silent for 0.2 s")));
+}
+
 TEST(LibraryProblem, ExceptionsAndNumbersThatAreNotFiniteAreReasons) {
   const auto problem = make_library("faulty");
   EXPECT_EQ(run_fault(*problem, 4).reason, "it broke");

@@ -11,6 +11,7 @@
 #include "base/temporary_folder.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "problems/user/user_problem.hpp"
+#include "process/stop_scope.hpp"
 #include "wait_until.hpp"
 
 namespace armwright {
@@ -214,8 +215,38 @@ TEST(ProgramProblem, TooFewAnswersToAQuestionAreToldAndAskedForAgain) {
   EXPECT_EQ(outcomes.at(0).error, 14);
   EXPECT_EQ(outcomes.at(1).error, 4.5 * 4.5 + 4);
   EXPECT_THAT(find_warnings(*loaded.problem)->take(),
-              ElementsAre("the program sent 1 of 2 answers and then has been silent for 1 s "
-                          "(program.time_limit_s); each case is asked for again, alone"));
+              ElementsAre("the program did not answer all cases of a question; it sent 1 of 2 "
+                          "answers and then has been silent for 1 s (program.time_limit_s); each "
+                          "case is asked for again, alone"));
+}
+
+TEST(ProgramProblem, TooFewAnswersAreToldOnceHoweverManyThereWere) {
+  const LoadedProblem loaded = load("too-few-together", {"program.time_limit_s=0.3"});
+  std::vector<CaseJob> jobs = {{.x = kGood, .block = &kFirstCase},
+                               {.x = kBad, .block = &kFirstCase}};
+  for (int turn = 0; turn < 2; ++turn) {
+    loaded.problem->simulate(jobs);
+    jobs.insert(jobs.begin(), jobs.front());
+  }
+  EXPECT_THAT(find_warnings(*loaded.problem)->take(), testing::SizeIs(1));
+}
+
+// The stop arrives after the second server has died, the last moment before the case is recorded.
+TEST(ProgramProblem, ADeathWithTheStopOfTheRunIsNoFailedCase) {
+  const TemporaryFolder folder;
+  const auto file = folder / "pids";
+  const LoadedProblem loaded = load("dies " + file.string());
+  StopSignal stop;
+  stop.set_lookout([&] {
+    std::ifstream pids(file);
+    pid_t first = 0;
+    pid_t second = 0;
+    if (pids >> first >> second && kill(second, 0) != 0) {
+      stop.request(StopReason::terminated);
+    }
+  });
+  const StopScope scope(&stop);
+  EXPECT_THROW(evaluate(loaded, kBad), WorkStopped);
 }
 
 TEST(ProgramProblem, WhatItStartedIsKilledWithIt) {
