@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/expect_error.hpp"
 #include "process/json_message.hpp"
@@ -46,12 +47,13 @@ TEST_F(RunTest, TellsTheWarningsOfABatchThatBreaksTheContract) {
 
 TEST_F(RunTest, TellsTheWarningsOfAJudgementThatAStopEnds) {
   StopSignal stop;
+  bool has_failed = false;
   const RunPlan plan = make_plan([&](const CaseJob& job) {
-    if (job.block->role == CaseRole::training) {
-      return false;
+    if (job.block->role == CaseRole::test) {
+      stop.request(StopReason::interrupted);
+      throw WorkStopped();  // as a program does that a stop ends
     }
-    stop.request(StopReason::interrupted);
-    return true;
+    return job.block->role == CaseRole::validation && !std::exchange(has_failed, true);
   });
   EXPECT_FALSE(execute_run({plan, temporary_ / "a", 1, {"armwright"}}, stop, observer_));
   EXPECT_THAT(observer_.messages, Contains(kWarning));
