@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -77,9 +78,8 @@ inline UserDescription describe_own() {
   return description;
 }
 
-// Without `counts`, the problem cannot be simulated.
-inline LoadedProblem make_own_problem(UserDescription description,
-                                      const std::shared_ptr<OwnProblemCounts>& counts) {
+// Without `start`, the problem cannot be simulated.
+inline LoadedProblem make_served_problem(UserDescription description, StartServer start) {
   LoadedProblem loaded;
   loaded.name = description.name;
   loaded.sets = {.validation_cases = static_cast<int>(description.validation_cases),
@@ -89,13 +89,49 @@ inline LoadedProblem make_own_problem(UserDescription description,
   loaded.resolved_json = R"({"kind": "program"})";
   UserProgram program{.name = "own",
                       .description = std::move(description),
-                      .start = {},
+                      .start = std::move(start),
                       .why_not = "it is computed elsewhere"};
-  if (counts) {
-    program.start = [counts] { return std::make_unique<OwnServer>(counts); };
-  }
   loaded.problem = make_user_problem(std::move(program));
   return loaded;
+}
+
+// Without `counts`, the problem cannot be simulated.
+inline LoadedProblem make_own_problem(UserDescription description,
+                                      const std::shared_ptr<OwnProblemCounts>& counts) {
+  StartServer start;
+  if (counts) {
+    start = [counts] { return std::make_unique<OwnServer>(counts); };
+  }
+  return make_served_problem(std::move(description), std::move(start));
+}
+
+// A server whose cases fail where `fails` returns true; a warning then says what it printed.
+class PrintingServer final : public CaseServer {
+ public:
+  using Fails = std::function<bool(const CaseJob&)>;
+  explicit PrintingServer(Fails fails) : fails_(std::move(fails)) {}
+  std::vector<CaseAnswer> answer(std::span<const CaseJob> jobs) override {
+    std::vector<CaseAnswer> answers;
+    for (const CaseJob& job : jobs) {
+      CaseAnswer& answer = answers.emplace_back(answer_own(job.x));
+      if (fails_(job)) {
+        answer.status = EvaluationStatus::failed;
+        answer.reason = "no mesh";
+        answer.details = "; it printed: angle 0";
+      }
+    }
+    return answers;
+  }
+
+ private:
+  Fails fails_;
+};
+
+inline LoadedProblem make_printing_problem(UserDescription description,
+                                           PrintingServer::Fails fails) {
+  return make_served_problem(std::move(description), [fails = std::move(fails)] {
+    return std::make_unique<PrintingServer>(fails);
+  });
 }
 
 }  // namespace armwright

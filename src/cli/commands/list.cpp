@@ -44,8 +44,8 @@ struct ListOptions {
   bool names = false;
 };
 
-ListKind find_kind(const std::string& name) {
-  for (const ListKind& kind : list_kinds()) {
+ListKind find_kind(const std::string& name, const std::string& program) {
+  for (const ListKind& kind : list_kinds(program)) {
     if (kind.name == name) {
       return kind;
     }
@@ -115,7 +115,7 @@ std::string format_list(const ListKind& kind, const Style& style) {
 }
 
 int run_list(const ListOptions& options, const Session& session) {
-  const ListKind kind = find_kind(options.kind);
+  const ListKind kind = find_kind(options.kind, session.command_line.front());
   const Style style = make_style(Stream::out, session.color);
   if (options.names) {
     if (options.json || options.markdown || !options.name.empty()) {

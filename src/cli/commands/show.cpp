@@ -83,7 +83,7 @@ int show_study(const ShowOptions& options, const Session& session) {
   if (options.json) {
     write_stdout(to_json(plan, result));
   } else if (result.missing.empty()) {
-    write_stdout(describe_study(plan, result, folder, make_style(Stream::out, session.color)));
+    write_stdout(describe_study(plan, result, folder, session));
   } else {
     const std::vector<std::string> command = {session.command_line.front(), "compare",
                                               (folder / "study.toml").string(), "--out",

@@ -56,13 +56,13 @@ std::vector<ListItem> list_signals() {
 
 }  // namespace
 
-std::vector<ListKind> list_kinds() {
+std::vector<ListKind> list_kinds(const std::string& program) {
   return {make_problem_kind(),
           make_optimizer_kind(),
           make_robot_kind(),
           make_engine_kind(),
           make_design_kind(),
-          make_study_kind(),
+          make_study_kind(program),
           make_plain_kind("signals", list_signals),
           make_controller_kind(),
           make_setting_kind()};

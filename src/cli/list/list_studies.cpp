@@ -26,14 +26,14 @@ StudyPlan load_study(const std::string& name) {
 std::vector<ListItem> list_known_studies() {
   std::vector<ListItem> items;
   for (const std::string& name : list_configs("studies")) {
-    items.push_back({name, read_study_outline(name).title});
+    items.push_back({name, read_study_title(name)});
   }
   return items;
 }
 
 // Returns what a study's file says without the descriptions that the programs of its problems give.
 std::string describe_outline(const std::string& name, const StudyOutline& outline,
-                             const Style& style) {
+                             const Style& style, const std::string& program) {
   Table table({{"", false}, {"", false, true}});
   for (const std::string& problem : outline.problems) {
     table.add_row({"problem", sanitize(problem)});
@@ -48,13 +48,13 @@ std::string describe_outline(const std::string& name, const StudyOutline& outlin
          fmt::format(
              "\nA problem of this study is described by its program, and this command starts no "
              "program. This shows the\nwhole plan and its cost:\n  {}\n",
-             sanitize(quote_command(
-                 std::vector<std::string>{"armwright", "compare", name, "--dry-run"})));
+             sanitize(
+                 quote_command(std::vector<std::string>{program, "compare", name, "--dry-run"})));
 }
 
-std::string explain_study(const std::string& name, const Style& style) {
+std::string explain_study(const std::string& name, const Style& style, const std::string& program) {
   if (const StudyOutline outline = read_study_outline(name); outline.needs_programs) {
-    return describe_outline(name, outline, style);
+    return describe_outline(name, outline, style, program);
   }
   const StudyPlan plan = load_study(name);
   return format_title(style, plan.name, plan.title) + describe_plan(plan) +
@@ -91,8 +91,11 @@ json explain_study_as_json(const std::string& name) {
 
 }  // namespace
 
-ListKind make_study_kind() {
-  return {"studies", list_known_studies, explain_study, explain_study_as_json};
+ListKind make_study_kind(const std::string& program) {
+  const auto explain = [program](const std::string& name, const Style& style) {
+    return explain_study(name, style, program);
+  };
+  return {"studies", list_known_studies, explain, explain_study_as_json};
 }
 
 }  // namespace armwright

@@ -36,10 +36,11 @@ ListKind make_optimizer_kind();
 ListKind make_robot_kind();
 ListKind make_engine_kind(std::span<const EngineRow> table = engine_table());
 ListKind make_design_kind();
-ListKind make_study_kind();
+ListKind make_study_kind(const std::string& program = "armwright");
 ListKind make_controller_kind();
 ListKind make_setting_kind();
-std::vector<ListKind> list_kinds();
+// `program` is this program's name as the user typed it, for the commands that texts name.
+std::vector<ListKind> list_kinds(const std::string& program = "armwright");
 // Returns the names of all kinds: "problems", "optimizers", ...
 std::vector<std::string> list_kind_names();
 

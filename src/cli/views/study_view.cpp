@@ -195,7 +195,7 @@ std::string describe_ranking(const StudyPlan& plan, const StudyResult& result, c
 
 // Returns where the best winner of each problem is, with the command that shows it.
 std::string describe_best_winners(const StudyPlan& plan, const StudyResult& result,
-                                  const std::filesystem::path& folder) {
+                                  const std::filesystem::path& folder, const Session& session) {
   std::string text;
   for (std::size_t p = 0; p < plan.problems.size(); ++p) {
     Cell best{.problem = p};
@@ -210,10 +210,9 @@ std::string describe_best_winners(const StudyPlan& plan, const StudyResult& resu
       }
     }
     if (std::isfinite(best_value)) {
-      const std::vector<std::string> words = {"armwright", "show",
-                                              (folder / make_cell_path(plan, best)).string()};
-      text += fmt::format("Best winner of {}: {}\n", plan.problems[p].label,
-                          sanitize(quote_command(words)));
+      const std::string command =
+          quote_own_command(session, {"show", (folder / make_cell_path(plan, best)).string()});
+      text += fmt::format("Best winner of {}: {}\n", plan.problems[p].label, command);
     }
   }
   return text;
@@ -318,7 +317,8 @@ std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned job
 }
 
 std::string describe_study(const StudyPlan& plan, const StudyResult& result,
-                           const std::filesystem::path& folder, const Style& style) {
+                           const std::filesystem::path& folder, const Session& session) {
+  const Style style = make_style(Stream::out, session.color);
   std::string text;
   for (std::size_t p = 0; p < result.problems.size(); ++p) {
     text += describe_problem(plan, result.problems[p], style);
@@ -346,7 +346,7 @@ std::string describe_study(const StudyPlan& plan, const StudyResult& result,
              "mean share of test cases {}.\nTables: {}\n",
              kSignificance, has_arm ? "with an error above 100 mm" : "without a number",
              sanitize((folder / "tables").string())) +
-         describe_best_winners(plan, result, folder);
+         describe_best_winners(plan, result, folder, session);
 }
 
 int end_study(const StudyPlan& plan, const std::filesystem::path& folder, unsigned jobs,
@@ -361,7 +361,7 @@ int end_study(const StudyPlan& plan, const std::filesystem::path& folder, unsign
   if (as_json) {
     write_stdout(to_json(plan, result));
   } else {
-    write_stdout(describe_study(plan, result, folder, make_style(Stream::out, session.color)));
+    write_stdout(describe_study(plan, result, folder, session));
   }
   const bool failed = std::ranges::any_of(
       result.cells, [](const CellOutcome& cell) { return !cell.failure.empty(); });

@@ -22,9 +22,10 @@ std::string describe_power(const StudyPlan& plan);
 // with `jobs` threads is added.
 std::string describe_cost(const StudyPlan& plan, double expected_s, unsigned jobs);
 
-// Returns one table per problem, the ranking over all problems, and the verdict.
+// Returns one table per problem, the ranking over all problems, the verdict, and the commands that
+// show the best winners, for standard output.
 std::string describe_study(const StudyPlan& plan, const StudyResult& result,
-                           const std::filesystem::path& folder, const Style& style);
+                           const std::filesystem::path& folder, const Session& session);
 
 // Ends a command that has all cells of a study: analyzes them, simulates the final checks with
 // `jobs` threads, writes the tables and prints the result (`as_json`: as JSON). The caller holds

@@ -384,6 +384,12 @@ std::vector<std::string> ProblemWarnings::take() {
   return std::exchange(waiting_, {});
 }
 
+void ProblemWarnings::forget() {
+  const std::lock_guard lock(mutex_);
+  told_.clear();
+  waiting_.clear();
+}
+
 // A program may give any reason, but reasons with these beginnings are made in this folder. The exit
 // code is how a command answers that a design fails.
 bool is_fault_of_program(const CaseOutcome& outcome) {

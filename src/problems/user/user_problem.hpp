@@ -28,6 +28,8 @@ class ProblemWarnings {
   void add(const std::string& reason, const std::string& details);
   // Returns the warnings that it has not returned yet.
   std::vector<std::string> take();
+  // Forgets all warnings, so that the same reason is a new warning again.
+  void forget();
 
  private:
   std::mutex mutex_;

@@ -237,6 +237,9 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
       one.infinite += std::isfinite(value) ? 0 : 1;
       one.infeasible += cell.violation > plan.constraint_tolerance ? 1 : 0;
       one.failed += cell.failure.empty() ? 0 : 1;
+      const bool found_none =
+          cell.x.empty() && cell.failure.empty() && cell.end_reason != kNotEnded;
+      one.unmet += found_none || cell.violation > plan.constraint_tolerance ? 1 : 0;
       cases.push_back(static_cast<double>(cell.cases));
     }
     if (runs.empty()) {

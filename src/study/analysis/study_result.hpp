@@ -82,6 +82,9 @@ struct OptimizerResult {
   int infinite = 0;            // number of replicates without a value
   int infeasible = 0;          // those of them whose winner violates a constraint on the test set
   int failed = 0;              // number of replicates in which the optimizer itself failed
+  // Number of replicates whose winner violates a constraint on the test set, or that ended without a
+  // winner although the optimizer did not fail.
+  int unmet = 0;
   Spread spread;
   Interval median_interval;
   double mean_rank = 0;

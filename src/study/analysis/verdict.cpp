@@ -111,11 +111,10 @@ std::vector<std::string> describe_violations(const StudyPlan& plan, const StudyP
   for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
     const OptimizerResult& one = problem.optimizers[o];
     const StudyOptimizer& optimizer = plan.optimizers[o];
-    if (one.infinite == 0) {
+    if (one.unmet == 0) {
       continue;
     }
-    counts.push_back(
-        fmt::format("{} ({} of {})", optimizer.label, one.infinite, one.values.size()));
+    counts.push_back(fmt::format("{} ({} of {})", optimizer.label, one.unmet, one.values.size()));
     if (optimizer.parsed.values().contains(kConstraintWeight)) {
       weights.push_back(fmt::format("{} ({})", optimizer.label,
                                     to_text(optimizer.parsed.values().at(kConstraintWeight))));

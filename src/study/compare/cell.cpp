@@ -13,6 +13,7 @@
 #include "study/compare/incumbents.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run/run_times.hpp"
+#include "study/run/warning_observer.hpp"
 #include "study/statistics/values.hpp"
 
 namespace armwright {
@@ -174,10 +175,11 @@ std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
 
 std::optional<CellOutcome> run_cell(const StudyPlan& plan, const Cell& cell,
                                     const CellRequest& where, StopSignal& stop,
-                                    RunObserver& observer) {
+                                    RunObserver& outer) {
   const RunClock clock;
   RunRequest request;
   request.plan = make_run_plan(plan, cell);
+  WarningObserver observer(*request.plan.problem.problem, outer);  // the test set is included
   request.folder = where.folder;
   request.root = where.root;
   request.jobs = where.jobs;

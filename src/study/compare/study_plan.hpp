@@ -176,22 +176,24 @@ void keep_selection(const std::filesystem::path& recorded, StudyPlan& plan);
 // version 1.0 had no other form. Throws as keep_baselines().
 void keep_plain_functions(const std::filesystem::path& recorded, StudyPlan& plan);
 
-// What a study's file says by itself.
+// Content of a study's file that needs no loading of problems and optimizers.
 struct StudyOutline {
   std::string name;
   std::string title;
   std::vector<std::string> problems = {};  // labels, or names where the file gives no label
-  std::vector<std::string> optimizers =
-      {};  // likewise; without baselines that the file does not name
+  // Likewise. Lacks the baselines that the file does not name.
+  std::vector<std::string> optimizers = {};
   int replicates = 0;
   std::int64_t budget = 0;  // 0: the file has none
   // True if make_study_plan() has to start a program that describes a problem.
   bool needs_programs = false;
 };
 
-// Returns the outline, without loading the problems and optimizers that the file names. `file` is a
-// path or the name of a shipped study. Throws Error{usage} if there is no such file or it is not
-// valid, and Error{io} if it cannot be read.
+// Both read a study's file without loading the problems and optimizers that it names. The outline
+// also takes a look at the problems' files. `file` is a path or the name of a shipped study. Throw
+// Error{usage} if there is no such file or it is not valid, Error{io} if it cannot be read, and
+// Error{bad_data} if reading takes too long (base/read_limit.hpp).
+std::string read_study_title(const std::string& file);
 StudyOutline read_study_outline(const std::string& file);
 
 // Returns the declarations of every setting of a study's file.
@@ -214,7 +216,7 @@ std::vector<const LoadedProblem*> list_problems(const StudyPlan& plan);
 // Returns the problem with the settings that the cell's optimizer trains on.
 const LoadedProblem& get_problem(const StudyPlan& plan, const Cell& cell);
 Schedule get_schedule(const StudyPlan& plan, const Cell& cell);
-// Returns the settings of the problem that somebody chose: all but the recorded description of a
+// Returns the settings of the problem that the user chose: all but the recorded description of a
 // program.
 std::vector<std::string> list_chosen_settings(const StudyProblem& problem);
 // Returns the schedule of a problem as the key `schedule` has it: "fixed:5" or "own".

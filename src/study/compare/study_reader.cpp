@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/read_limit.hpp"
+#include "base/text.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "study/compare/study_methods.hpp"
@@ -360,7 +362,13 @@ void keep_selection(const std::filesystem::path& recorded, StudyPlan& plan) {
   plan.selection.most = 0;
 }
 
+std::string read_study_title(const std::string& file) {
+  const ReadStep step(fmt::format("the study '{}'", sanitize(file)));
+  return ConfigTable::load(study_settings(), resolve_config("studies", file)).get(kStudyTitle);
+}
+
 StudyOutline read_study_outline(const std::string& file) {
+  const ReadStep step(fmt::format("the study '{}'", sanitize(file)));
   const auto path = resolve_config("studies", file);
   StudyPlan plan;
   const RawPlan raw = read_study_file(path, plan);

@@ -1,5 +1,5 @@
 // Reads a study's file, without loading the problems and optimizers that it names. Internal to this
-// module; study_plan.hpp declares study_settings() and read_study_title().
+// module; study_plan.hpp declares study_settings(), read_study_title() and read_study_outline().
 #pragma once
 
 #include <filesystem>

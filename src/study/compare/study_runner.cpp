@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
+#include "problems/user/user_problem.hpp"
 #include "process/child_process.hpp"
 #include "study/compare/cell_worker.hpp"
 #include "study/executor/case_packets.hpp"
@@ -50,6 +52,7 @@ class Runner {
 
   std::optional<std::size_t> run(unsigned jobs) {
     observer_.on_progress(progress_);
+    forget_warnings();  // of the simulations that estimated the time of the study
     auto workers = start_workers(std::min(count_at_once(jobs), cells_.size()));
     std::vector<std::thread> threads;
     try {
@@ -113,9 +116,18 @@ class Runner {
                                .memory_mib = 1e9};
     return std::make_unique<ChildProcess>(
         [this](ParentLink& parent) {
+          forget_warnings();  // of this process, which the worker has inherited
           work_on_cells(plan_, cells_, study_, parent, coordinator_ != nullptr);
         },
         limits);
+  }
+
+  void forget_warnings() {
+    for (const LoadedProblem* loaded : problems_) {
+      if (ProblemWarnings* const warnings = find_warnings(*loaded->problem)) {
+        warnings->forget();
+      }
+    }
   }
 
   void guard(const std::function<void()>& body) {
@@ -199,7 +211,8 @@ class Runner {
   }
 
   // Simulates a batch for the process of a cell.
-  void simulate(ChildProcess& worker, std::uint64_t problem, const std::string& bytes) {
+  void simulate(ChildProcess& worker, std::uint64_t number, const std::string& bytes) {
+    const LoadedProblem& loaded = *problems_.at(number);
     ReceivedBatch received;
     PacketReader packet(bytes);
     get_batch(packet, received);
@@ -218,15 +231,27 @@ class Runner {
     };
     PacketWriter last;
     try {
-      coordinator_->run(CaseBatch(*problems_.at(problem)->problem, received.candidates,
-                                  received.block, received.extras, pass_on),
-                        stop_);
+      coordinator_->run(
+          CaseBatch(*loaded.problem, received.candidates, received.block, received.extras, pass_on),
+          stop_);
       last.put(Answer::end);
     } catch (const std::exception& error) {
       last.put(Answer::failure);
       last.put(std::string_view(error.what()));
     }
+    tell_warnings(loaded);
     answer(last);
+  }
+
+  // Several cells may simulate the same problem here, so the messages name no cell.
+  void tell_warnings(const LoadedProblem& loaded) {
+    if (ProblemWarnings* const warnings = find_warnings(*loaded.problem)) {
+      const std::lock_guard lock(mutex_);
+      for (const std::string& warning : warnings->take()) {
+        observer_.on_message(
+            fmt::format("problem '{}': warning: {}", sanitize(loaded.name), warning));
+      }
+    }
   }
 
   // Counts the running cells of each problem while it lives. When the last one ends, the problem's

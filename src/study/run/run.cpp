@@ -14,6 +14,7 @@
 #include "study/run/run_evaluator.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run/run_times.hpp"
+#include "study/run/warning_observer.hpp"
 #include "study/run/winner_selection.hpp"
 
 namespace armwright {
@@ -131,9 +132,10 @@ void warn_of_fewer_threads(std::size_t granted, std::size_t wanted, RunObserver&
 }  // namespace
 
 std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop,
-                                     RunObserver& observer) {
+                                     RunObserver& outer) {
   const RunClock clock;
   RunPlan plan = request.plan;
+  WarningObserver observer(*plan.problem.problem, outer);
   check_plan(plan);
   if (!request.ask && plan.problem.program.empty()) {
     require_server(*plan.problem.problem);  // before a folder is made
@@ -214,7 +216,6 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     add_time();
     return std::nullopt;
   }
-  evaluator.tell_warnings();
   // A failed run gets no end record, so that it goes on from the failure when it is started again.
   if (!recorded.ended && result.failure.empty()) {
     journal.append(EndRecord{result.end_reason, result.counts.evaluations});

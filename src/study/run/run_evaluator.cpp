@@ -49,8 +49,7 @@ RunEvaluator::RunEvaluator(const RunPlan& plan, CaseExecutor& executor, StopSign
       recorded_(recorded.training),
       journal_ended_(recorded.ended),
       recorded_late_(recorded.late),
-      candidates_(plan),
-      warnings_(find_warnings(*plan.problem.problem)) {
+      candidates_(plan) {
   block_.role = CaseRole::training;
   block_.set = get_training_set(plan.problem.sets.training, plan.schedule);
   block_.numbers.resize(static_cast<std::size_t>(plan.schedule.cases));
@@ -295,7 +294,6 @@ std::vector<Score> RunEvaluator::evaluate_batch(std::span<const std::vector<doub
     }
   }
 
-  tell_warnings();
   // A stop can leave gaps. The optimizer gets the results before the first gap, and a resumed run
   // evaluates only the gaps.
   const auto complete =
@@ -480,14 +478,6 @@ void RunEvaluator::finish_evaluation(EvaluationRecord record, Score& score) {
   score.objectives = plan_.problem.problem->penalty_objectives();
   if (first_failure_.empty()) {
     first_failure_ = std::move(evaluation.reason);
-  }
-}
-
-void RunEvaluator::tell_warnings() {
-  if (warnings_ != nullptr) {
-    for (const std::string& warning : warnings_->take()) {
-      observer_.on_message("warning: " + warning);
-    }
   }
 }
 

@@ -16,7 +16,6 @@
 
 #include "optimizers/interface/evaluator.hpp"
 #include "optimizers/interface/treated_problem.hpp"
-#include "problems/user/user_problem.hpp"
 #include "study/executor/case_executor.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/candidate_pool.hpp"
@@ -56,8 +55,6 @@ class RunEvaluator final : public Evaluator {
   bool budget_spent() const { return budget_spent_; }
   const RunCounts& counts() const { return counts_; }
   // Returns the reason of the first evaluation without objectives; empty if there is none.
-  // Tells the observer the warnings of a user's problem that it has not heard yet.
-  void tell_warnings();
   const std::string& first_failure() const { return first_failure_; }
   // Returns the smallest constraint violation of all evaluations, or nothing if there is none.
   std::optional<double> least_violation() const { return least_violation_; }
@@ -123,7 +120,6 @@ class RunEvaluator final : public Evaluator {
   CaseBlock block_;
   std::optional<CaseBreeder> breeder_;  // set if the schedule breeds cases
   CandidatePool candidates_;
-  ProblemWarnings* const warnings_;  // null if the problem has none
 };
 
 }  // namespace armwright

@@ -46,6 +46,13 @@ TEST(ListStudies, AProblemFileThatNamesAProgramIsListedToo) {
   EXPECT_FALSE(std::filesystem::exists(folder / "STARTED"));
 }
 
+TEST(ListStudies, TheNextCommandHasTheProgramsNameAsTyped) {
+  const TemporaryFolder folder;
+  const std::string file = write_study(folder, "exec:true");
+  EXPECT_THAT(make_study_kind("./bin/arm").explain(file, Style(false)),
+              HasSubstr("\n  ./bin/arm compare " + file + " --dry-run"));
+}
+
 TEST(ListStudies, OtherStudiesAreListedAsAWhole) {
   const TemporaryFolder folder;
   EXPECT_THAT(make_study_kind().explain(write_study(folder, "sphere"), Style(false)),

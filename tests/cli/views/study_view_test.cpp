@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "study/analysis/analysis_support.hpp"
 #include "study/statistics/power.hpp"
 
 namespace armwright {
@@ -26,6 +27,16 @@ TEST(DescribePlan, ShowsSettingsButNoRecordedDescriptions) {
   plan.problems[0].settings = {"function.dimension=3", "program.description={\"variables\": []}"};
   EXPECT_THAT(describe_plan(plan),
               AllOf(HasSubstr("(function.dimension=3)"), Not(HasSubstr("description"))));
+}
+
+TEST(DescribeStudy, ShowsTheBestWinnerByTheProgramsNameAsTyped) {
+  const StudyPlan plan = make_sphere_plan({"ga", "cmaes"}, 6);
+  const StudyResult result = analyze_values(plan, {{3, 3, 3, 3, 3, 3}, {4, 4, 2, 4, 4, 4}});
+  Session session;
+  session.command_line = {"./bin/arm", "show", "mine"};
+  session.color = "never";
+  EXPECT_THAT(describe_study(plan, result, "mine", session),
+              HasSubstr("Best winner of sphere: ./bin/arm show mine/cells/sphere/cmaes/r03\n"));
 }
 
 TEST(DescribePower, SaysWhichDifferenceTheStudyCanShow) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "base/text.hpp"
 #include "study/analysis/analysis_support.hpp"
@@ -171,17 +172,36 @@ TEST(Verdict, NamesOptimizersWithoutFeasibleWinnersAndTheirWeights) {
   const StudyPlan plan = make_study_plan(request);
   problem.pairs = {make_pair(0, 1, false), make_pair(0, 2, false), make_pair(1, 2, false)};
   EXPECT_THAT(describe(plan, problem), Not(HasSubstr("constraint")));
-  problem.optimizers[1].infinite = 2;
+  problem.optimizers[1].unmet = 2;
   EXPECT_THAT(describe(plan, problem),
               HasSubstr("On constrained, runs of these optimizers have no winner that meets the "
                         "constraints on the test set: random (2 of 15).\n"));
-  problem.optimizers[0].infinite = 3;
+  problem.optimizers[0].unmet = 3;
   EXPECT_THAT(describe(plan, problem),
               HasSubstr("cmaes (3 of 15) and random (2 of 15); the option constraint_weight of "
                         "cmaes (10) weighs violations against the objective"));
   // A run without any winner is no matter of constraints on a problem that has none.
   EXPECT_THAT(describe(make_sphere_plan({"cmaes", "random", "ga"}, 15), problem),
               Not(HasSubstr("constraint")));
+}
+
+TEST(Verdict, CountsNoFailedOptimizerAndNoFailedCaseAsAViolation) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const StudyPlan plan = make_sphere_plan({"ga", "cmaes"}, 6);
+  StudyResult result =
+      analyze_values(plan, {{1, 2, kNone, kNone, kNone, kNone}, {1, 2, 3, 4, 5, 6}});
+  for (CellOutcome& cell : result.cells) {
+    cell.x = {1};
+  }
+  result.cells[1].violation = 0.5;
+  result.cells[2].violation = 0.5;
+  result.cells[3].x.clear();  // no winner
+  result.cells[4].x.clear();  // the optimizer failed at once
+  result.cells[4].failure = "it fell over";
+  EXPECT_EQ(analyze_problem(plan, 0, result.cells).optimizers[0].unmet, 3);  // not 4 or 5
+  result.cells[3].end_reason = kNotEnded;
+  EXPECT_EQ(analyze_problem(plan, 0, result.cells).optimizers[0].unmet, 2);
+  EXPECT_EQ(analyze_problem(plan, 0, result.cells).optimizers[1].unmet, 0);
 }
 
 TEST(Verdict, SaysThatRunningTimesOfVersionOneAreCoarse) {
