@@ -20,8 +20,8 @@ namespace armwright {
 struct CaseAnswer {
   EvaluationStatus status = EvaluationStatus::ok;
   std::string reason;
-  // What a warning adds to the reason, as in "; the last that it printed: ...". It is not recorded,
-  // because it may differ each time.
+  // Text that a warning adds to the reason, as in "; the last that it printed: ...". It is not
+  // recorded, because it may differ each time.
   std::string details;
   std::vector<double> objectives;
   std::vector<double> constraints;

@@ -49,7 +49,7 @@ export interface WinnerFile {
 
 export type VariableType = 'real' | 'integer' | 'category';
 
-// What the run recorded of its result and effort. The fields after `cases` are null without a winner.
+// The recorded result and effort of a run. The fields after `cases` are null without a winner.
 export interface Headline {
   started: string; // "2026-01-31T12:00:00Z", or "" if it is not recorded
   evaluations: number; // of training
