@@ -1,5 +1,8 @@
 // Tests runs on problems of users under SIGKILL: a resumed run ends with the same bytes, and the
 // processes of the problem end with the run.
+#include <unistd.h>
+
+#include <string>
 #include <tuple>
 
 #include "base/random.hpp"
@@ -9,6 +12,9 @@ namespace armwright::faults {
 namespace {
 
 using Fault = FailingFiles::Fault;
+
+// Finds the processes of this test among those of tests that run at the same time.
+const std::string kMark = "problem-" + std::to_string(getpid());
 
 // The way by which the problem reaches armwright, and the optimizer.
 class KilledProblem : public testing::TestWithParam<std::tuple<const char*, const char*>> {
@@ -55,10 +61,10 @@ TEST_P(KilledProblem, EndsWithTheSameBytesAfterTenKills) {
   for (int life = 0; life < 10; ++life) {
     const auto at = static_cast<std::uint64_t>(random.uniform(2, 9));
     Environment environment = files.make_environment(Fault::kill, at, 0);
-    environment.variables.emplace_back("FAULTS_MARK", "problem");
+    environment.variables.emplace_back("FAULTS_MARK", kMark);
     const Outcome killed = run("runs/killed", 1 + life % 2, environment);
     kills += killed.exit_code == -SIGKILL ? 1 : 0;
-    ASSERT_TRUE(wait_until([] { return list_processes("problem").empty(); }))
+    ASSERT_TRUE(wait_until([] { return list_processes(kMark).empty(); }))
         << "processes of the problem outlive the run";
   }
   EXPECT_EQ(kills, 10);
@@ -106,7 +112,7 @@ class InterruptedProblem : public testing::TestWithParam<const char*> {
 
   Environment make_environment() const {
     Environment environment;
-    environment.variables = {{"TEST_GATE", gate_.string()}, {"FAULTS_MARK", "interrupted"}};
+    environment.variables = {{"TEST_GATE", gate_.string()}, {"FAULTS_MARK", kMark}};
     return environment;
   }
 
@@ -124,7 +130,7 @@ TEST_P(InterruptedProblem, ACaseInProgressEndsWithTheRunAndIsSimulatedAgain) {
   const Outcome stopped = program.wait();
   EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
   EXPECT_THAT(stopped.err, HasSubstr("interrupted; nothing is lost. To resume:"));
-  EXPECT_TRUE(wait_until([] { return list_processes("interrupted").empty(); }));
+  EXPECT_TRUE(wait_until([] { return list_processes(kMark).empty(); }));
   write_text(gate_, "");
   const Outcome last = run_program(folder_.path(), make_words("stopped"), make_environment());
   ASSERT_EQ(last.exit_code, 0) << last.err;
@@ -141,7 +147,7 @@ TEST_P(InterruptedProblem, ASignalToEveryProcessOfTheJobFailsNoCase) {
   ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(folder_ / "gate.reached"); }));
   program.send(SIGSTOP);
   EXPECT_TRUE(wait_until([&] {  // it may have started another process before it stopped
-    auto others = list_processes("interrupted");
+    auto others = list_processes(kMark);
     std::erase(others, program.pid());
     for (const int process : others) {
       kill(process, SIGTERM);
