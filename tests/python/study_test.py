@@ -101,7 +101,8 @@ class StudyTest(FolderTest):
         pathlib.Path("theirs/cells").mkdir(parents=True)
         pathlib.Path("theirs/study.toml").write_text('problems = ["sphere"]\nreplicates = 2\nbudget = 30\n'
                                                      'optimizers = ["ga", "exec:sh -c \'echo > PWNED\'"]\n')
-        self.assertFalse(armwright.load_study("theirs").finished)
+        with self.expect_error(armwright.BadDataError, "it has no plan_sha256"):
+            armwright.load_study("theirs")
         with self.expect_error(armwright.UsageError, "would run, with all of your rights: exec:sh -c 'echo > PWNED'", "trust=True"):
             armwright.compare(study="theirs/study.toml")
         self.assertFalse(pathlib.Path("PWNED").exists())
