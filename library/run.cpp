@@ -37,7 +37,7 @@ namespace {
 constexpr std::size_t kMostProgramBytes = std::size_t{1} << 32;
 constexpr std::int64_t kMostBudget = 1'000'000'000'000;
 constexpr std::uint32_t kMostJobs = 4096;
-constexpr double kLongest_s = 1e9;  // as of --time-limit
+constexpr double kLongest_s = 1e9;  // the limit of --time-limit
 
 // Returns the request. Fields that the header of the host program does not have are zero.
 struct armwright_run_request read_request(const struct armwright_run_request* raw) {
