@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -95,6 +96,10 @@ RobotModel add_load(RobotModel model, double mass_kg) {
   last.inertial = combine(last.inertial, block);
   last.visuals.push_back(shape);
   return model;
+}
+
+bool RobotModel::has_plant() const {
+  return std::ranges::any_of(joints, [](const Joint& joint) { return !joint.plant.is_ideal(); });
 }
 
 RobotModel scale_masses(RobotModel model, double factor) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "sim/robot/joint_plant.hpp"
 
 namespace armwright {
 
@@ -67,6 +68,7 @@ struct Joint {
   double upper = 0;         // rad or m
   double speed_limit = 0;   // rad/s or m/s; both +inf for a continuous joint without <limit>
   double effort_limit = 0;  // N m or N
+  JointPlant plant;         // the ideal joint unless it is set
 };
 
 struct RobotModel {
@@ -87,6 +89,8 @@ struct RobotModel {
   std::map<std::string, std::filesystem::path> mass_files;
 
   std::size_t joint_count() const { return joints.size(); }
+  // Returns whether a joint is not ideal.
+  bool has_plant() const;
 };
 
 // Options that select the simulated chain of a URDF and give links a mass.

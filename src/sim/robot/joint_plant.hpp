@@ -1,0 +1,59 @@
+// What stands between a joint's motor and its link: rotor inertia, friction, elasticity and
+// counterbalance. With q the joint's position, v its rate, and u the effort of its controller, a
+// rigid joint obeys
+//   M(q) qdd + b(q, v) = u + s(q) - A qdd - f(v),
+//   f(v) = o + d v + (c + s_t) tanh(v / v_w) - s_t tanh(v / v_s).
+// A is the rotor's inertia times the gear ratio squared, d the viscous friction, c the Coulomb
+// friction, c + s_t the friction at breakaway, and o a constant offset. Friction rises to c + s_t
+// within about v_w and falls to c until about v_s (Stribeck). This form has that of Weigand et al.
+// (2021), f_c sgn(v) + f_a tanh(f_b v), with f_a = -s_t, f_b = 1 / v_s and f_c = c + s_t. A joint
+// that sticks creeps at v_w artanh(tau / (c + s_t)) under an effort tau.
+//
+// An elastic joint has a motor at the angle p (in units of q) and a spring of stiffness k and
+// damping z between motor and link; friction acts on the motor (Spong 1987, Modeling and control of
+// elastic joint robots):
+//   A pdd = u - f(pd) - e,   M(q) qdd + b(q, v) = e + s(q),   e = k (p - q) + z (pd - v).
+//
+// Units: rad, rad/s and N m for a revolute joint, m, m/s and N for a prismatic one.
+#pragma once
+
+#include <vector>
+
+namespace armwright {
+
+// The effort s(q) of a spring or gas spring that acts beside the motor. It is given at even
+// distances from `lower` to `upper`, is straight between these positions, and keeps its value beyond
+// both ends.
+struct Counterbalance {
+  double lower = 0, upper = 0;  // rad or m
+  std::vector<double> efforts;  // N m or N, at least two; empty: no counterbalance
+
+  bool operator==(const Counterbalance&) const = default;
+};
+
+// The position that the controller of an elastic joint measures.
+enum class MeasuredSide { motor, link };
+
+struct JointPlant {
+  double armature = 0;            // A, kg m^2 or kg
+  double viscous = 0;             // d, N m s/rad or N s/m
+  double coulomb = 0;             // c, N m or N
+  double stribeck = 0;            // s_t, N m or N; at least -c
+  double transition_rate = 0.01;  // v_w > 0, rad/s or m/s
+  double stribeck_rate = 0.1;     // v_s >= v_w, rad/s or m/s
+  double offset = 0;              // o, N m or N
+  double stiffness = 0;           // k, N m/rad or N/m; 0: the joint is rigid. Needs armature > 0
+  double damping = 0;             // z, N m s/rad or N s/m
+  MeasuredSide measured = MeasuredSide::motor;
+  Counterbalance counterbalance;
+
+  bool operator==(const JointPlant&) const = default;
+  bool is_elastic() const { return stiffness > 0; }
+  bool has_friction() const { return viscous > 0 || coulomb > 0 || stribeck != 0 || offset != 0; }
+  // Returns whether nothing stands between motor and link.
+  bool is_ideal() const {
+    return armature == 0 && !has_friction() && !is_elastic() && counterbalance.efforts.empty();
+  }
+};
+
+}  // namespace armwright
