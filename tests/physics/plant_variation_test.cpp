@@ -39,15 +39,15 @@ class Turnstile : public testing::Test {
   void step(double effort_n_m) {
     q_ = read_positions(arm_, 1);
     rate_ = read_rates(arm_, 1);
-    const auto torque = plant_.calc_effort({&effort_n_m, 1}, {q_.data(), 1}, {rate_.data(), 1});
-    arm_.step(torque, kStep_s);
+    plant_.act({&effort_n_m, 1}, {q_.data(), 1}, {rate_.data(), 1});
+    arm_.step(plant_.effort(), kStep_s);
   }
   double rate() const { return read_rates(arm_, 1)[0]; }
 
   PlantVariation variation_ = make_variation(1);
   VectorXd q_ = VectorXd::Constant(1, 0.3), rate_;
   Arm arm_ = make_arm<Arm>(kTurnstile, q_);
-  ArmPlant plant_{variation_, kTurnstile, {q_.data(), 1}};
+  ArmPlant plant_{kTurnstile, &variation_, {q_.data(), 1}, kStep_s};
 };
 TYPED_TEST_SUITE(Turnstile, ArmTypes, ArmNames);
 
@@ -106,7 +106,8 @@ struct RecordingArm {
   double angle(std::size_t joint, int step) const {
     return 0.1 * (static_cast<double>(joint) + 1) + 0.001 * step;
   }
-  void step(std::span<const double> torque_n_m, double /*dt_s*/) {
+  void step(std::span<const double> torque_n_m, double /*dt_s*/,
+            std::span<const double> /*inertia*/ = {}) {
     torques_n_m.emplace_back(torque_n_m.begin(), torque_n_m.end());
     ++steps;
   }

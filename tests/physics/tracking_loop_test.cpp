@@ -42,7 +42,8 @@ struct ScriptedArm {
   std::vector<std::vector<double>> efforts_n_m;
   std::vector<double> steps_s;
 
-  void step(std::span<const double> effort_n_m, double dt_s) {
+  void step(std::span<const double> effort_n_m, double dt_s,
+            std::span<const double> /*inertia*/ = {}) {
     if (static_cast<int>(steps_s.size()) == diverges_in_step) {
       throw DivergenceError("joint 2 (elbow): gone");
     }

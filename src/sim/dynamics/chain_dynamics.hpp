@@ -60,6 +60,9 @@ class ChainDynamics : public ChainPosture<V, Chain> {
   }
   ARMWRIGHT_INLINE V bias(int row) const { return bias_[row]; }
 
+  // Adds inertia that turns with a joint, such as its motor's, to M.
+  ARMWRIGHT_INLINE void add_inertia(int joint, V inertia) { entry(joint, joint) += inertia; }
+
   // Computes qdd = M^-1 (tau - b). Overwrites M.
   ARMWRIGHT_INLINE void solve(const V* effort, V* acceleration) {
     // Factors M = L D L' in place: L below the diagonal, 1 / D on it, D L' above it.

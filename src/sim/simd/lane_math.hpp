@@ -31,6 +31,12 @@ ARMWRIGHT_INLINE V round_to_integer(V x) {
   return (x + rounder) - rounder;
 }
 
+// Returns the integer part of x, which must be within the range of an int.
+template <class T>
+ARMWRIGHT_INLINE int to_integer(T x) {
+  return static_cast<int>(x);
+}
+
 // Returns x minus the nearest multiple of 2 pi. Returns exactly x if |x| < pi.
 template <class V>
 ARMWRIGHT_INLINE V wrap(V x) {

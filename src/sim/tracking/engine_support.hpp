@@ -16,6 +16,11 @@ class DivergenceError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// An engine that knows the links' places ends at these; no arm that is only out of control comes
+// near them.
+inline constexpr double kFarthestLink_m = 1e3;
+inline constexpr double kFastestLink_rad_per_s = 1e6;
+
 // What the reason of a divergence says of a joint whose state is not finite.
 inline constexpr std::string_view kNotFinite = "its position or speed is not a finite number";
 

@@ -2,17 +2,20 @@
 // discrete inverse dynamics. With theta_k the target at the end of control period k, theta_(-1) the
 // start, h the control period, and differences of revolute joints taken the short way round,
 //   v_k = (theta_k - theta_(k-1)) / h,   a_k = (v_k - v_(k-1)) / h,   v_(-1) = 0,
-//   inverse_dynamics:  tau_k = M(theta_(k-1)) a_k + b(theta_(k-1), v_(k-1)),
-//   gravity:           tau_k = b(theta_(k-1), 0).
-// With the efforts of inverse_dynamics, one step of semi-implicit Euler takes this arm exactly from
-// the target at the period's start to the target at its end. With those of gravity, an arm at rest
-// stays at rest. If a control period has more than one step, the arm ends beside the target; the
+//   inverse_dynamics:  tau_k = (M(theta_(k-1)) + A) a_k + b(theta_(k-1), v_(k-1)) + f(v_k) - s,
+//   gravity:           tau_k = b(theta_(k-1), 0) + f(0) - s,
+// with the rotor inertias A, the friction f and the counterbalances s = s(theta_(k-1)) of the joints
+// (sim/robot/joint_plant.hpp). Elastic joints count as rigid.
+// With the efforts of inverse_dynamics, one step of semi-implicit Euler takes an arm without
+// friction and elasticity exactly from the target at the period's start to the target at its end.
+// With those of gravity, an arm at rest stays at rest. If a control period has more than one step, the arm ends beside the target; the
 // distance grows with h.
 #include <algorithm>
 #include <vector>
 
 #include "sim/dynamics/chain_dynamics.hpp"
 #include "sim/dynamics/chain_model.hpp"
+#include "sim/dynamics/joint_effort.hpp"
 #include "sim/kinematics/kinematics.hpp"
 #include "sim/tracking/tracking_setup.hpp"
 
@@ -23,6 +26,14 @@ struct FeedForwardLevel;  // tags the code that this file instantiates
 using FeedForwardNumber = lanes::Single<double, FeedForwardLevel>;
 using FeedForwardChain = articulated::ChainShape<0, articulated::kAnyShape, true>;
 
+// Returns the effort that a joint's plant takes from the motor.
+double calc_plant_effort(const Joint& joint, double q, double rate, double acceleration) {
+  const JointPlant& its = joint.plant;
+  return its.armature * acceleration + its.offset +
+         articulated::calc_friction_chord(its, rate) * rate -
+         articulated::calc_counterbalance(joint, q);
+}
+
 }  // namespace
 
 void TrackingSetup::fill_feed_forward(TargetTable& table) const {
@@ -32,6 +43,7 @@ void TrackingSetup::fill_feed_forward(TargetTable& table) const {
   }
   const articulated::ChainModel& chain = *chain_;
   const double period_s = task_.control_period_s;
+  const bool has_plant = robot_.has_plant();
   const std::size_t n = table.joints;
   const auto joint_kind = [&](std::size_t i) {
     return (chain.flags()[i] & articulated::kPrismatic) == 0 ? JointKind::revolute
@@ -73,6 +85,9 @@ void TrackingSetup::fill_feed_forward(TargetTable& table) const {
             acceleration[j].v;
       }
       efforts[i] = effort;
+      if (has_plant) {
+        efforts[i] += calc_plant_effort(robot_.joints[i], before[i], next[i].v, acceleration[i].v);
+      }
     }
     rate = next;
     before = target;

@@ -58,6 +58,10 @@ struct TrackingJob {
   const TrackingSetup& choose_setup(const TrackingSetup& of_batch) const {
     return setup != nullptr ? *setup : of_batch;
   }
+  // Returns whether the plant is perturbed, or a joint of the arm is not ideal.
+  bool has_plant(const TrackingSetup& of_batch) const {
+    return variation != nullptr || choose_setup(of_batch).robot().has_plant();
+  }
 };
 
 // Says how a simulation ended. TrackingResult::mean_error_m depends on it:

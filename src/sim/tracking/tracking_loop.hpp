@@ -13,27 +13,41 @@
 
 namespace armwright {
 
-// The perturbations of one arm's plant (plant_variation.hpp), for an engine that steps single arms.
+// The plant of one arm for an engine that steps single arms: what stands between motors and links
+// (joint_plant.hpp), and perturbations (plant_variation.hpp).
 class ArmPlant {
  public:
-  // Starts at rest with joint positions q (rad or m). All arguments but q must outlive the object.
-  ArmPlant(const PlantVariation& variation, const RobotModel& robot, std::span<const double> q);
+  // Starts at rest with joint positions q (rad or m). The robot and the variation must outlive the
+  // object. `variation` may be null.
+  ArmPlant(const RobotModel& robot, const PlantVariation* variation, std::span<const double> q,
+           double substep_s);
 
-  // Returns the joint positions as the controllers measure them now: delayed and rounded.
+  // Returns the joint positions as the controllers measure them now.
   std::span<const double> measure();
-  // Returns the efforts (N m or N) that act on the joints during a substep, given the controllers'
-  // efforts and the joints' state at its start. The next call overwrites them.
-  std::span<const double> calc_effort(std::span<const double> effort, std::span<const double> q,
-                                      std::span<const double> qd);
+  // Computes what acts on the links during a substep, given the controllers' efforts and the
+  // joints' state at its start. Moves the motors of elastic joints to its end.
+  void act(std::span<const double> effort, std::span<const double> q, std::span<const double> qd);
+  // Return the efforts (N m or N) on the links, and the inertia (kg m^2 or kg) that joins each
+  // joint. It is empty if no joint has any.
+  std::span<const double> effort() const { return acting_effort_; }
+  std::span<const double> inertia() const { return inertia_; }
   // Stores the joint positions that a substep ended with.
   void remember(std::span<const double> q);
+  // Returns the position that the controller's effort pushes: that of the link, which is q, or of
+  // the motor of an elastic joint.
+  double get_pushed(std::size_t joint, double q) const;
 
  private:
-  const PlantVariation& variation_;
+  double perturb(std::size_t joint, double effort, double q, double rate) const;
+  double pass_spring(std::size_t joint, double effort, double q, double rate);
+
   const RobotModel& robot_;
-  std::vector<std::vector<double>> past_;  // a ring of joint positions: one more than the delay
+  const PlantVariation* variation_;
+  double substep_s_;
+  std::vector<std::vector<double>> past_;  // a ring of measured positions: one more than the delay
   std::size_t newest_ = 0;
-  std::vector<double> measured_, acting_effort_;
+  std::vector<double> measured_, acting_effort_, inertia_;
+  std::vector<double> motor_, motor_rate_;  // used for elastic joints
 };
 
 // One simulation of one job.
@@ -50,9 +64,9 @@ class TrackingLoop {
  private:
   template <class Arm>
   void step(Arm& arm, int step);  // steps count from the beginning of the case
-  // Steps a perturbed plant by one substep.
+  // Steps a plant that is not ideal by one substep.
   template <class Arm>
-  void step_perturbed(Arm& arm);
+  void step_plant(Arm& arm);
   // Returns the squared error (m^2) at the end of a segment's move: that of the tip, or the mean
   // over the tool points.
   template <class Arm>
@@ -66,8 +80,9 @@ class TrackingLoop {
   double substep_s_;
   std::vector<std::unique_ptr<Controller>> controllers_;
   bool has_feed_forward_ = false;
-  std::vector<double> q_, q_before_, effort_;
-  std::optional<ArmPlant> plant_;  // empty: the nominal plant
+  std::vector<double> q_, effort_;
+  std::vector<double> pushed_before_;  // at the start of the period (ArmPlant::get_pushed())
+  std::optional<ArmPlant> plant_;      // empty: the ideal plant
   std::vector<double> plant_q_, plant_rate_;
   TrackingResult result_;
 };
@@ -82,12 +97,11 @@ void TrackingLoop::step(Arm& arm, int step) {
   }
   for (int substep = 0; substep < setup_.task().physics.substeps; ++substep) {
     if (plant_) {
-      step_perturbed(arm);
+      step_plant(arm);
     } else {
       arm.step(effort_, substep_s_);
     }
   }
-  q_.swap(q_before_);
   arm.read_positions(q_);
   ++result_.steps;
   for (std::size_t i = 0; i < q_.size(); ++i) {
@@ -95,15 +109,19 @@ void TrackingLoop::step(Arm& arm, int step) {
     result_.peak_effort[i] = std::max(result_.peak_effort[i], magnitude);
     result_.rms_effort[i] += magnitude * magnitude;
     result_.saturated_share[i] += controllers_[i]->saturated() ? 1 : 0;
-    result_.energy_j += std::max(
-        0.0, effort_[i] * calc_displacement(setup_.robot().joints[i].kind, q_before_[i], q_[i]));
+    const double pushed = plant_ ? plant_->get_pushed(i, q_[i]) : q_[i];
+    const JointKind kind = setup_.robot().joints[i].kind;
+    result_.energy_j +=
+        std::max(0.0, effort_[i] * calc_displacement(kind, pushed_before_[i], pushed));
+    pushed_before_[i] = pushed;
   }
 }
 
 template <class Arm>
-void TrackingLoop::step_perturbed(Arm& arm) {
+void TrackingLoop::step_plant(Arm& arm) {
   arm.read_rates(plant_rate_);
-  arm.step(plant_->calc_effort(effort_, plant_q_, plant_rate_), substep_s_);
+  plant_->act(effort_, plant_q_, plant_rate_);
+  arm.step(plant_->effort(), substep_s_, plant_->inertia());
   arm.read_positions(plant_q_);
   plant_->remember(plant_q_);
 }
@@ -149,8 +167,9 @@ TrackingResult TrackingLoop::run(Arm& arm) {
   const bool recording = job_.recording.any();
   try {
     arm.read_positions(q_);
-    if (job_.variation != nullptr) {
-      plant_.emplace(*job_.variation, setup_.robot(), q_);
+    pushed_before_ = q_;
+    if (job_.has_plant(setup_)) {
+      plant_.emplace(setup_.robot(), job_.variation, q_, substep_s_);
       plant_q_ = q_;
       plant_rate_.resize(q_.size());
     }

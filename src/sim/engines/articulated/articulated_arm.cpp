@@ -108,7 +108,8 @@ void ArticulatedArm::set_state(std::span<const double> q, std::span<const double
   }
 }
 
-void ArticulatedArm::step(std::span<const double> effort, double dt_s) {
+void ArticulatedArm::step(std::span<const double> effort, double dt_s,
+                          std::span<const double> inertia) {
   Chain& c = *chain_;
   for (std::size_t i = 0; i < c.joints(); ++i) {
     if (!std::isfinite(effort[i])) {
@@ -120,6 +121,9 @@ void ArticulatedArm::step(std::span<const double> effort, double dt_s) {
   }
   Dynamics dynamics = c.make_dynamics();
   dynamics.calc_equations(c.q.data(), c.rate.data());
+  for (std::size_t i = 0; i < inertia.size(); ++i) {
+    dynamics.add_inertia(static_cast<int>(i), inertia[i]);
+  }
   dynamics.solve(c.effort.data(), c.acceleration.data());
   for (std::size_t i = 0; i < c.joints(); ++i) {
     c.rate[i].v += dt_s * c.acceleration[i].v;
@@ -194,6 +198,8 @@ Eigen::MatrixXd ArticulatedArm::calc_mass_matrix() const {
     for (int column = 0; column <= row; ++column) {
       mass(row, column) = mass(column, row) = dynamics.mass(row, column).v;
     }
+    const JointPlant& plant = chain_->model.joints[to_size(row)].plant;
+    mass(row, row) += plant.is_elastic() ? 0 : plant.armature;
   }
   return mass;
 }

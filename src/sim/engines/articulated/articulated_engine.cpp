@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/engines/articulated/lane_block.hpp"
+#include "sim/engines/articulated/plant_numbers.hpp"
 #include "sim/tracking/engine_support.hpp"
 
 namespace armwright {
@@ -34,6 +35,21 @@ bool have_same_shape(const ChainModel& a, const ChainModel& b) {
   return &a == &b || (a.flags() == b.flags() && a.tilted_gravity() == b.tilted_gravity());
 }
 
+bool have_same_drives(const RobotModel& a, const RobotModel& b) {
+  if (&a == &b) {
+    return true;
+  }
+  for (std::size_t i = 0; i < a.joint_count(); ++i) {
+    const JointPlant& its = a.joints[i].plant;
+    const JointPlant& other = b.joints[i].plant;
+    if (get_drive_flags(its) != get_drive_flags(other) ||
+        its.counterbalance != other.counterbalance) {
+      return false;
+    }
+  }
+  return true;
+}
+
 // Throws Error{usage}, as every engine does, if the design's numbers make no controller.
 void check_design(const ArmDesign& design, const RobotModel& robot) {
   const ControllerRow& row = find_controller(design.controller);
@@ -50,12 +66,11 @@ class ArticulatedEngine final : public PhysicsEngine {
   std::vector<TrackingResult> simulate(const TrackingSetup& setup,
                                        std::span<const TrackingJob> jobs) const override {
     std::vector<TrackingResult> results(jobs.size());
-    // Groups of jobs with the same timeline, shape of the arm and controller, and with perturbed
-    // plants or nominal ones. These decide which code runs, and that must not depend on the other
-    // jobs of a batch.
+    // Groups of jobs with the same timeline, shape of the arm, controller and parts of the plant.
+    // These decide which code runs, and that must not depend on the other jobs of a batch.
     std::vector<std::vector<std::size_t>> alike;
-    const auto get_chain = [&](std::size_t job) -> const ChainModel& {
-      return jobs[job].choose_setup(setup).chain();
+    const auto get_setup = [&](std::size_t job) -> const TrackingSetup& {
+      return jobs[job].choose_setup(setup);
     };
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       if (i == 0 || jobs[i].design != jobs[i - 1].design) {
@@ -68,7 +83,8 @@ class ArticulatedEngine final : public PhysicsEngine {
       const TargetTable& targets = *jobs[i].targets;
       const auto found = std::find_if(alike.begin(), alike.end(), [&](const auto& group) {
         return have_same_timeline(*jobs[group.front()].targets, targets) &&
-               have_same_shape(get_chain(group.front()), get_chain(i)) &&
+               have_same_shape(get_setup(group.front()).chain(), get_setup(i).chain()) &&
+               have_same_drives(get_setup(group.front()).robot(), get_setup(i).robot()) &&
                jobs[group.front()].design->controller == jobs[i].design->controller &&
                (jobs[group.front()].variation == nullptr) == (jobs[i].variation == nullptr);
       });

@@ -29,6 +29,8 @@ enum StateField : int {
   kPeakEffort,
   kSquaredEffort,  // summed over the steps
   kClampedSteps,
+  kMotor,  // position and rate of an elastic joint's motor
+  kMotorRate,
   kStateFields
 };
 // The state of the simulation, which follows the joints' states.
@@ -43,13 +45,39 @@ enum StateSingle : int {
   kStateSingles = kToolTargetX + 3 * kMostToolPoints
 };
 
-// The perturbations of a plant (sim/tracking/plant_variation.hpp): of each joint, then of the arm.
-enum PlantField : int { kViscous, kCoulomb, kRipple, kRipplePhase, kPlantFields };
+// The numbers of a plant that is not ideal: of each joint, then of the arm.
+enum PlantField : int {
+  kViscous,  // the first four of a perturbation (sim/tracking/plant_variation.hpp)
+  kCoulomb,
+  kRipple,
+  kRipplePhase,
+  kArmature,  // the others of the robot (sim/robot/joint_plant.hpp)
+  kDrag,      // viscous friction
+  kBreakaway,
+  kStribeck,
+  kInverseTransition,
+  kInverseStribeck,
+  kOffset,
+  kStiffness,
+  kDamping,
+  kPlantFields
+};
+// Of a perturbation.
 enum PlantSingle : int {
   kRateScale,     // 1 / v_s
   kRippleCycles,  // per turn
   kQuantum,
   kPlantSingles
+};
+
+// What a joint's plant consists of; the same in all lanes.
+enum DriveFlag : std::uint8_t {
+  kHasArmature = 1,
+  kHasFriction = 2,
+  kHasStribeck = 4,
+  kElastic = 8,
+  kMeasuresMotor = 16,  // elastic, and the controller measures the motor's position
+  kBalanced = 32,       // has a counterbalance
 };
 
 constexpr int calc_state_packs(int joints) {
@@ -64,7 +92,7 @@ constexpr int calc_plant_packs(int joints) {
   return joints * kPlantFields + kPlantSingles;
 }
 constexpr int calc_scratch_packs(int joints) {
-  return 4 * joints + calc_dynamics_packs(joints);
+  return 6 * joints + calc_dynamics_packs(joints);
 }
 // A recorded step: the joint positions, the efforts, and the tip's position.
 inline constexpr int kRecordSingles = 3;
@@ -75,6 +103,8 @@ constexpr int calc_record_packs(int joints) {
 inline constexpr int kMaxLanes = 16;
 
 enum class LaneEvent : std::uint8_t { none, cut_off, diverged };
+
+struct BalanceGrid;  // sim/dynamics/joint_laws.hpp
 
 // One segment of the timeline for one pack of lanes. The caller owns all memory. It must be aligned
 // to 64 bytes.
@@ -100,9 +130,13 @@ struct SegmentCall {
   // One pointer per lane, to the setpoints of the segment's first step; one row per step.
   const double* const* targets = nullptr;
   const double* const* feed_forward = nullptr;  // likewise; null if the controller needs none
-  // The following five are for perturbed plants. `plant` is null for nominal ones.
-  const T* plant = nullptr;    // calc_plant_packs() packs
-  T* past = nullptr;           // a ring of `past_length` x joints packs: positions after substeps
+  // The following are for plants that are not ideal. `plant` is null for ideal ones.
+  const T* plant = nullptr;               // calc_plant_packs() packs
+  const std::uint8_t* drives = nullptr;   // DriveFlag bits, one byte per joint
+  const BalanceGrid* balances = nullptr;  // one per joint, the same in all lanes
+  // The following four are for perturbed plants. `past` is null for others.
+  T* past = nullptr;           // a ring of `past_length` x joints packs: the positions of the
+                               // measured sides after substeps
   int past_length = 1;         // larger than any lane's delay
   int newest = 0;              // the place of the present positions in the ring
   const int* delay = nullptr;  // one per lane: age of the measured positions, in substeps

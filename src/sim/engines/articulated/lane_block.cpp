@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/engines/articulated/plant_numbers.hpp"
 #include "sim/kinematics/kinematics.hpp"
 #include "sim/tracking/engine_support.hpp"
 
@@ -65,7 +66,10 @@ class LaneBlock {
   int control_packs_ = 0;
   // Count of numbers per pack of lanes (record_size_: per step).
   std::size_t state_size_, model_size_, record_size_;
+  bool has_plant_ = false;
   bool perturbed_ = false;
+  std::vector<std::uint8_t> drives_;   // DriveFlag bits per joint
+  std::vector<BalanceGrid> balances_;  // one per joint
   int past_length_ = 1;
   std::size_t plant_size_ = 0, past_size_ = 0;
   std::vector<int> delays_;  // one per slot
@@ -155,6 +159,7 @@ void LaneBlock<T>::place(std::size_t slot, std::size_t job) {
     };
     const JointDrive& drive = one.design->joints[i];
     set(kQ, one.targets->start_positions[i]);
+    set(kMotor, one.targets->start_positions[i]);
     set(kIntegrating, 1);
     set(kEffortMin, drive.limits.min);
     set(kEffortMax, drive.limits.max);
@@ -167,7 +172,7 @@ void LaneBlock<T>::place(std::size_t slot, std::size_t job) {
   }
   numbers[(kStateFields * joints_ + kCutoffSquared) * lanes()] =
       static_cast<T>(one.cutoff_m * one.cutoff_m);
-  if (perturbed_) {
+  if (has_plant_) {
     place_plant(slot, job);
   }
   TrackingResult& result = results_[job];
@@ -179,27 +184,44 @@ void LaneBlock<T>::place(std::size_t slot, std::size_t job) {
 
 template <class T>
 void LaneBlock<T>::reserve_plants(std::span<const std::size_t> chosen, std::size_t groups) {
-  perturbed_ = jobs_[chosen.front()].variation != nullptr;
+  const TrackingJob& first = jobs_[chosen.front()];
+  has_plant_ = first.has_plant(setup_);
+  if (!has_plant_) {
+    return;
+  }
+  for (const Joint& joint : setup_of(chosen.front()).robot().joints) {
+    drives_.push_back(get_drive_flags(joint.plant));
+    balances_.push_back(make_balance_grid(joint.plant.counterbalance));
+  }
+  plant_size_ = calc_size(calc_plant_packs(static_cast<int>(joints_)), kernel_.lanes);
+  plants_ = AlignedNumbers<T>(groups * plant_size_);
+  perturbed_ = first.variation != nullptr;
   if (!perturbed_) {
     return;
   }
   for (const std::size_t job : chosen) {
     past_length_ = std::max(past_length_, jobs_[job].variation->delay_substeps + 1);
   }
-  plant_size_ = calc_size(calc_plant_packs(static_cast<int>(joints_)), kernel_.lanes);
   past_size_ = calc_size(past_length_ * static_cast<int>(joints_), kernel_.lanes);
-  plants_ = AlignedNumbers<T>(groups * plant_size_);
   pasts_ = AlignedNumbers<T>(groups * past_size_);
   delays_.assign(groups * lanes(), 0);
 }
 
 template <class T>
 void LaneBlock<T>::place_plant(std::size_t slot, std::size_t job) {
-  const PlantVariation& variation = *jobs_[job].variation;
   T* const numbers = plants_.data() + slot / lanes() * plant_size_ + slot % lanes();
   const auto set = [&](std::size_t pack, double value) {
     numbers[pack * lanes()] = static_cast<T>(value);
   };
+  const std::vector<Joint>& joints = setup_of(job).robot().joints;
+  for (std::size_t i = 0; i < joints_; ++i) {
+    set_plant_numbers(joints[i].plant,
+                      [&](PlantField field, double value) { set(field * joints_ + i, value); });
+  }
+  if (!perturbed_) {
+    return;
+  }
+  const PlantVariation& variation = *jobs_[job].variation;
   for (std::size_t i = 0; i < joints_; ++i) {
     set(kViscous * joints_ + i, variation.viscous_friction[i]);
     set(kCoulomb * joints_ + i, variation.coulomb_friction[i]);
@@ -219,11 +241,16 @@ void LaneBlock<T>::place_plant(std::size_t slot, std::size_t job) {
 template <class T>
 void LaneBlock<T>::set_plant(std::size_t first, const Segment& timeline,
                              SegmentCall<T>& call) const {
+  if (!has_plant_) {
+    return;
+  }
+  call.plant = plants_.data() + first / lanes() * plant_size_;
+  call.drives = drives_.data();
+  call.balances = balances_.data();
   if (!perturbed_) {
     return;
   }
   const std::int64_t substeps = std::int64_t{timeline.first_step} * call.substeps;
-  call.plant = plants_.data() + first / lanes() * plant_size_;
   call.past = pasts_.data() + first / lanes() * past_size_;
   call.past_length = past_length_;
   call.newest = static_cast<int>(substeps % past_length_);
@@ -439,8 +466,10 @@ void LaneBlock<T>::close_up() {
     if (own_models_) {
       copy_lane(models_, model_size_, slot, gap);
     }
-    if (perturbed_) {
+    if (has_plant_) {
       copy_lane(plants_, plant_size_, slot, gap);
+    }
+    if (perturbed_) {
       copy_lane(pasts_, past_size_, slot, gap);
       delays_[gap] = delays_[slot];
     }

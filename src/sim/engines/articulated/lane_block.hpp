@@ -32,8 +32,8 @@ class AlignedNumbers {
 };
 
 // Simulates the jobs with the numbers `chosen`; the result of jobs[i] is results[i]. The chosen
-// jobs must all have the same timeline, shape of the arm and controller, and either all or none of
-// them a PlantVariation.
+// jobs must all have the same timeline, shape of the arm, controller and counterbalances, the same
+// DriveFlag bits (kernels.hpp), and either all or none of them a PlantVariation.
 template <class T>
 void simulate_block(const TrackingSetup& setup, const Kernel<T>& kernel,
                     std::span<const TrackingJob> jobs, std::span<const std::size_t> chosen,

@@ -19,8 +19,8 @@ inline constexpr T kFarthest = T{1e6};
 template <>
 inline constexpr float kFarthest<float> = 1e4F;
 
-// Simulates the segment. kPerturbed: the plants have the perturbations of LanePlant.
-template <class V, class Chain, bool kPerturbed = false>
+// Simulates the segment. kIdeal: the plants have no part of LanePlant.
+template <class V, class Chain, bool kIdeal = true>
 class SegmentKernel {
  public:
   using T = typename V::Scalar;
@@ -61,12 +61,15 @@ class SegmentKernel {
       const bool measuring = recording || step >= call_.window_start;
       for (int substep = 1; substep <= call_.substeps; ++substep) {
         dynamics_.calc_equations(q, rate);
-        dynamics_.solve(plant_.calc_effort(&effort_[0], q, rate), &acceleration_[0]);
+        const V* const acting = plant_.calc_effort(&effort_[0], q, rate, substep_s);
+        plant_.add_inertia(dynamics_);
+        dynamics_.solve(acting, &acceleration_[0]);
         chain_.for_up([&](auto i) __attribute__((always_inline)) {
           rate[i] += substep_s * acceleration_[i];
           const V way = substep_s * rate[i];
           q[i] += way;
-          way_[i] = substep == 1 ? way : way_[i] + way;
+          const V pushed = plant_.get_pushed_way(i, way, substep_s);
+          way_[i] = substep == 1 ? pushed : way_[i] + pushed;
         });
         plant_.remember(q);
         dynamics_.set_posture(q, measuring && substep == call_.substeps);
@@ -211,7 +214,7 @@ class SegmentKernel {
   V* scratch_;
   Chain chain_;
   ChainDynamics<V, Chain> dynamics_;
-  LanePlant<V, Chain, kPerturbed> plant_;
+  LanePlant<V, Chain, kIdeal> plant_;
   PackList<V, Chain::kJoints> effort_, acceleration_, way_;
 };
 
@@ -252,21 +255,29 @@ void run_known_length(SegmentCall<typename V::Scalar>& call) {
   }
 }
 
-// Runs perturbed plants. They have fewer kernels because each takes long to compile.
+// Runs plants that are not ideal. They have fewer kernels because each takes long to compile.
 template <class V>
-void run_perturbed(SegmentCall<typename V::Scalar>& call) {
+void run_plant(SegmentCall<typename V::Scalar>& call) {
   if (call.joints == 4 && !call.prismatic && !call.tilted_gravity &&
       has_shape(call.flags, 4, kPalletiser)) {
-    SegmentKernel<V, Palletiser, true>::run(call);
-  } else {
-    SegmentKernel<V, AnyChain, true>::run(call);
+    return SegmentKernel<V, Palletiser, false>::run(call);
   }
+  // Perturbed plants of other arms kept the code for any length since version 1.0.
+  if constexpr (kHasKnownLengths) {
+    if (!call.prismatic && call.past == nullptr && call.joints == 6) {
+      return SegmentKernel<V, ChainShape<6, kAnyShape, false>, false>::run(call);
+    }
+    if (!call.prismatic && call.past == nullptr && call.joints == 7) {
+      return SegmentKernel<V, ChainShape<7, kAnyShape, false>, false>::run(call);
+    }
+  }
+  SegmentKernel<V, AnyChain, false>::run(call);
 }
 
 template <class V>
 void run_segment(SegmentCall<typename V::Scalar>& call) {
   if (call.plant != nullptr) {
-    return run_perturbed<V>(call);
+    return run_plant<V>(call);
   }
   constexpr int kLongestKnown = 8;
   if constexpr (kHasKnownLengths) {

@@ -27,6 +27,7 @@ struct Carrier;
 //   min, max, select   those of the number that is chosen; of two equal numbers, the second
 //   abs                those of the side; at zero, of positive numbers
 //   wrap               those of the argument: the turns that are left out are constant
+//   round_to_integer   0
 //   comparisons        compare the values alone; a count of them has no derivative
 // The values are the same as on a lane of double.
 template <class Number>
@@ -98,6 +99,12 @@ ARMWRIGHT_NUMBER NumberLane<N> wrap(const NumberLane<N>& x) {
   const auto wrapped = wrap(Single<double, NumberLevel>(x.value()));
   return NumberLane<N>(Carrier<N>::calc(wrapped.v, 1, x.v));
 }
+ARMWRIGHT_NUMBER NumberLane<N> round_to_integer(const NumberLane<N>& x) {
+  return NumberLane<N>(round_to_integer(Single<double, NumberLevel>(x.value())).v);
+}
+ARMWRIGHT_NUMBER int to_integer(const NumberLane<N>& x) {
+  return static_cast<int>(x.value());
+}
 ARMWRIGHT_NUMBER void calc_sine_cosine(const NumberLane<N>& x, NumberLane<N>& sine,
                                        NumberLane<N>& cosine) {
   Single<double, NumberLevel> s;
@@ -158,6 +165,7 @@ struct Carrier<Dual<P>> {
 // The dynamics find the functions above only if those are declared first. Therefore this include is
 // not at the top; if the dynamics are included earlier, nothing compiles.
 #include "sim/engines/articulated/lane_kernel.hpp"
+#include "sim/engines/articulated/plant_numbers.hpp"
 
 namespace armwright::articulated {
 
@@ -194,6 +202,7 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     };
     const NumberDrive<Number>& drive = drives[static_cast<std::size_t>(i)];
     set(kQ, V(job.targets->start_positions[static_cast<std::size_t>(i)]));
+    set(kMotor, V(job.targets->start_positions[static_cast<std::size_t>(i)]));
     set(kIntegrating, V(1));
     set(kEffortMin, V(drive.effort_min));
     set(kEffortMax, V(drive.effort_max));
@@ -201,6 +210,21 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     for (const Number& gain : drive.gains) {
       state[static_cast<std::size_t>(place)] = V(gain);
       place += n;
+    }
+  }
+  const std::vector<Joint>& joints = own.robot().joints;
+  std::vector<V> plant;
+  std::vector<std::uint8_t> flags;  // DriveFlag bits
+  std::vector<BalanceGrid> balances;
+  if (own.robot().has_plant()) {
+    plant.assign(static_cast<std::size_t>(calc_plant_packs(n)), V(0));
+    for (int i = 0; i < n; ++i) {
+      const JointPlant& its = joints[static_cast<std::size_t>(i)].plant;
+      set_plant_numbers(its, [&](PlantField field, double value) {
+        plant[static_cast<std::size_t>(field * n + i)] = V(value);
+      });
+      flags.push_back(get_drive_flags(its));
+      balances.push_back(make_balance_grid(its.counterbalance));
     }
   }
   V* const singles = state.data() + kStateFields * n;
@@ -244,9 +268,14 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     call.feed_forward = &feed_forward;
     call.alive = 1;
     call.final_state = final_state.data();
+    call.plant = plant.empty() ? nullptr : plant.data();
+    call.drives = flags.data();
+    call.balances = balances.data();
     // There are fewer kernels than for simulations because each takes long to compile.
-    if (n == 4 && !call.prismatic && !call.tilted_gravity &&
-        has_shape(call.flags, 4, kPalletiser)) {
+    if (call.plant != nullptr) {
+      SegmentKernel<V, AnyChain, false>::run(call);
+    } else if (n == 4 && !call.prismatic && !call.tilted_gravity &&
+               has_shape(call.flags, 4, kPalletiser)) {
       SegmentKernel<V, Palletiser>::run(call);
     } else {
       SegmentKernel<V, AnyChain>::run(call);

@@ -22,9 +22,6 @@
 namespace armwright {
 namespace {
 
-constexpr double kFarthest_m = 1e3;
-constexpr double kFastest_rad_per_s = 1e6;
-
 static_assert(sizeof(mjtNum) == sizeof(double), "armwright needs MuJoCo in double precision");
 
 void delete_files(mjVFS* files) {
@@ -200,7 +197,7 @@ MujocoArm::MujocoArm(const RobotModel& robot, std::span<const double> q,
 
 MujocoArm::~MujocoArm() = default;
 
-void MujocoArm::step(std::span<const double> effort, double dt_s) {
+void MujocoArm::step(std::span<const double> effort, double dt_s, std::span<const double> inertia) {
   World& w = *world_;
   for (std::size_t i = 0; i < w.robot->joint_count(); ++i) {
     if (!std::isfinite(effort[i])) {
@@ -211,6 +208,12 @@ void MujocoArm::step(std::span<const double> effort, double dt_s) {
     w.data->qfrc_applied[i] = effort[i];
   }
   w.model->opt.timestep = dt_s;
+  if (!inertia.empty()) {
+    std::copy(inertia.begin(), inertia.end(), w.model->dof_armature);
+    mj_crb(w.model.get(), w.data.get());
+    mj_factorM(w.model.get(), w.data.get());
+    std::fill_n(w.model->dof_armature, inertia.size(), 0.0);  // for this step alone
+  }
   mj_fwdActuation(w.model.get(), w.data.get());
   mj_fwdAcceleration(w.model.get(), w.data.get());
   mj_fwdConstraint(w.model.get(), w.data.get());
@@ -232,7 +235,7 @@ void MujocoArm::check() const {
     const double* spin = w.data->cvel + 6 * (i + 1);  // its first half
     const double distance = std::abs(position[0]) + std::abs(position[1]) + std::abs(position[2]);
     const double rate = std::abs(spin[0]) + std::abs(spin[1]) + std::abs(spin[2]);
-    if (distance < kFarthest_m && rate < kFastest_rad_per_s) {  // false for NaN too
+    if (distance < kFarthestLink_m && rate < kFastestLink_rad_per_s) {  // false for NaN too
       continue;
     }
     if (!std::isfinite(distance) || !std::isfinite(rate)) {

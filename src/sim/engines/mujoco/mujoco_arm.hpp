@@ -39,10 +39,11 @@ class MujocoArm {
   MujocoArm(const MujocoArm&) = delete;
   MujocoArm& operator=(const MujocoArm&) = delete;
 
-  // Advances by dt_s with one effort per joint (N m or N). Throws DivergenceError, naming the
-  // joint, in the same cases as OdeArm. It also throws if a joint moves less than 1e-15 kg m^2 (or
+  // Advances by dt_s with one effort per joint (N m or N), and one added inertia (kg m^2 or kg) per
+  // joint or none. Throws DivergenceError, naming the joint, in the same cases as OdeArm. It also
+  // throws if a joint moves less than 1e-15 kg m^2 (or
   // kg), which MuJoCo replaces by another inertia.
-  void step(std::span<const double> effort, double dt_s);
+  void step(std::span<const double> effort, double dt_s, std::span<const double> inertia = {});
 
   void read_positions(std::span<double> q) const;  // rad in [-pi, pi], or m
   void read_rates(std::span<double> qd) const;

@@ -14,9 +14,6 @@
 namespace armwright {
 namespace {
 
-constexpr double kFarthest_m = 1e3;
-constexpr double kFastest_rad_per_s = 1e6;
-
 // ODE reports errors through process-wide handlers and then aborts the process. These handlers
 // throw instead, and the owner discards the world that was being stepped.
 [[noreturn]] void throw_ode_message(int number, const char* format, va_list arguments) {
@@ -142,7 +139,7 @@ struct OdeArm::World {
       const dReal* spin = dBodyGetAngularVel(bodies[i]);
       const double distance = std::abs(position[0]) + std::abs(position[1]) + std::abs(position[2]);
       const double rate = std::abs(spin[0]) + std::abs(spin[1]) + std::abs(spin[2]);
-      if (distance < kFarthest_m && rate < kFastest_rad_per_s) {  // false for NaN too
+      if (distance < kFarthestLink_m && rate < kFastestLink_rad_per_s) {  // false for NaN too
         continue;
       }
       if (!std::isfinite(distance) || !std::isfinite(rate)) {
@@ -203,8 +200,27 @@ OdeArm::OdeArm(const RobotModel& model, std::span<const double> q, const Physics
 
 OdeArm::~OdeArm() = default;
 
-void OdeArm::step(std::span<const double> effort, double dt_s) {
+// Lets a motor without a largest effort hold the joint's rate v_n softly. ODE adds the row
+// v = v_n - CFM lambda, with lambda the motor's effort. With CFM = h / E, the effort is that of an
+// added inertia, lambda = -E (v - v_n) / h.
+void OdeArm::add_inertia(std::span<const double> inertia, double dt_s) {
   World& w = *world_;
+  for (std::size_t i = 0; i < inertia.size(); ++i) {
+    const bool slides = w.is_prismatic(i);
+    const auto set = [&](int parameter, double value) {
+      (slides ? dJointSetSliderParam : dJointSetHingeParam)(w.joints[i], parameter, value);
+    };
+    if (inertia[i] > 0) {
+      set(dParamVel, slides ? w.calc_slide_rate(i) : dJointGetHingeAngleRate(w.joints[i]));
+      set(dParamCFM, dt_s / inertia[i]);
+    }
+    set(dParamFMax, inertia[i] > 0 ? dInfinity : 0);
+  }
+}
+
+void OdeArm::step(std::span<const double> effort, double dt_s, std::span<const double> inertia) {
+  World& w = *world_;
+  add_inertia(inertia, dt_s);
   for (std::size_t i = 0; i < w.joints.size(); ++i) {
     if (!std::isfinite(effort[i])) {
       throw DivergenceError(

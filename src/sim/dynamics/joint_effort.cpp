@@ -1,0 +1,34 @@
+#include "sim/dynamics/joint_effort.hpp"
+
+namespace armwright::articulated {
+namespace {
+
+struct EffortLevel;  // tags the code that this file instantiates
+using Number = lanes::Single<double, EffortLevel>;
+
+}  // namespace
+
+double calc_friction_chord(const JointPlant& plant, double rate) {
+  const FrictionNumbers<Number> numbers{plant.viscous, plant.coulomb + plant.stribeck,
+                                        plant.stribeck, 1 / plant.transition_rate,
+                                        1 / plant.stribeck_rate};
+  return calc_friction_chord(numbers, Number(rate), plant.stribeck != 0).v;
+}
+
+double calc_counterbalance(const Joint& joint, double position) {
+  const BalanceGrid grid = make_balance_grid(joint.plant.counterbalance);
+  return grid.efforts == nullptr
+             ? 0
+             : calc_balance(grid, Number(position), joint.kind == JointKind::prismatic).v;
+}
+
+BalanceGrid make_balance_grid(const Counterbalance& its) {
+  if (its.efforts.empty()) {
+    return {0, 0, 0, 0, nullptr};
+  }
+  const int last = static_cast<int>(its.efforts.size()) - 1;
+  return {(its.lower + its.upper) / 2, its.lower, last / (its.upper - its.lower), last,
+          its.efforts.data()};
+}
+
+}  // namespace armwright::articulated

@@ -1,0 +1,19 @@
+// The laws of joint_laws.hpp for the joints of a robot, as single numbers.
+#pragma once
+
+#include "sim/dynamics/joint_laws.hpp"
+#include "sim/robot/robot_model.hpp"
+
+namespace armwright::articulated {
+
+// Returns the slope phi(v) of the friction's chord.
+double calc_friction_chord(const JointPlant& plant, double rate);
+
+// Returns the counterbalance's effort s(q), 0 if there is none. The position of a revolute joint
+// may have whole turns too many.
+double calc_counterbalance(const Joint& joint, double position);
+
+// Returns the grid of a counterbalance, which must outlive it. Without efforts all is 0.
+BalanceGrid make_balance_grid(const Counterbalance& counterbalance);
+
+}  // namespace armwright::articulated

@@ -1,0 +1,33 @@
+// The numbers of a joint's plant (sim/robot/joint_plant.hpp) as the kernels get them.
+#pragma once
+
+#include "sim/dynamics/joint_effort.hpp"
+#include "sim/engines/articulated/kernels.hpp"
+
+namespace armwright::articulated {
+
+// Returns the DriveFlag bits of a joint.
+inline std::uint8_t get_drive_flags(const JointPlant& plant) {
+  const auto flag = [](bool holds, DriveFlag bit) { return holds ? bit : 0; };
+  return static_cast<std::uint8_t>(
+      flag(plant.armature > 0, kHasArmature) | flag(plant.has_friction(), kHasFriction) |
+      flag(plant.stribeck != 0, kHasStribeck) | flag(plant.is_elastic(), kElastic) |
+      flag(plant.is_elastic() && plant.measured == MeasuredSide::motor, kMeasuresMotor) |
+      flag(!plant.counterbalance.efforts.empty(), kBalanced));
+}
+
+// Calls set(field, number) for each PlantField of a JointPlant.
+template <class Set>
+void set_plant_numbers(const JointPlant& plant, const Set& set) {
+  set(kArmature, plant.armature);
+  set(kDrag, plant.viscous);
+  set(kBreakaway, plant.coulomb + plant.stribeck);
+  set(kStribeck, plant.stribeck);
+  set(kInverseTransition, 1 / plant.transition_rate);
+  set(kInverseStribeck, 1 / plant.stribeck_rate);
+  set(kOffset, plant.offset);
+  set(kStiffness, plant.stiffness);
+  set(kDamping, plant.damping);
+}
+
+}  // namespace armwright::articulated
