@@ -143,6 +143,55 @@ void BM_GenerationOnTwoCoresAgainstOne(benchmark::State& state) {
 }
 BENCHMARK(BM_GenerationOnTwoCoresAgainstOne)->Iterations(30)->Unit(benchmark::kMillisecond);
 
+// Returns the arm with rotor inertia and all of the friction at every joint, and a counterbalance.
+// With springs, its first two joints are elastic.
+RobotModel make_full_plant(RobotModel robot, bool has_springs) {
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    JointPlant& plant = robot.joints[i].plant;
+    const double size = i < 3 ? 1 : 0.005;
+    plant.armature = 100 * size;
+    plant.viscous = 50 * size;
+    plant.coulomb = 80 * size;
+    plant.stribeck = 30 * size;
+    plant.offset = 5 * size;
+    if (has_springs && i < 2) {
+      plant.stiffness = 3e6;
+      plant.damping = 1e3;
+    }
+  }
+  robot.joints[1].plant.counterbalance = {-2, 3, std::vector<double>(1025, 300)};
+  return robot;
+}
+
+// What the plant of real joints costs the engine `articulated` per robot step.
+void BM_PlantAgainstIdealArm(benchmark::State& state) {
+  const LoadedProblem problem = load_problem("q1-complex");
+  const TrackingSetup& ideal = problem.tracking()->setup();
+  const bool has_springs = state.range(0) == 1;
+  const TrackingSetup full(make_full_plant(ideal.robot(), has_springs), ideal.task());
+  const ArmDesign design = load_design("table-a5").design;
+  const TargetTable targets =
+      ideal.make_targets(problem.tracking()->get_set("test/2").make_case(0));
+  const auto engine = make_engine("articulated");
+  std::vector<TrackingJob> jobs(engine->batch_size().largest);
+  for (TrackingJob& job : jobs) {
+    job.design = &design;
+    job.targets = &targets;
+  }
+  std::vector<double> with, without, ratio;
+  for (auto _ : state) {
+    with.push_back(measure_s([&] { benchmark::DoNotOptimize(engine->simulate(full, jobs)); }));
+    without.push_back(measure_s([&] { benchmark::DoNotOptimize(engine->simulate(ideal, jobs)); }));
+    ratio.push_back(with.back() / without.back());
+  }
+  const double steps = static_cast<double>(jobs.size()) * targets.steps;
+  state.counters["plant_ns_per_step"] = 1e9 * calc_median(with) / steps;
+  state.counters["ideal_ns_per_step"] = 1e9 * calc_median(without) / steps;
+  state.counters["ratio"] = calc_median(ratio);
+  state.SetLabel(has_springs ? "with springs" : "rigid");
+}
+BENCHMARK(BM_PlantAgainstIdealArm)->Arg(0)->Arg(1)->Iterations(60)->Unit(benchmark::kMillisecond);
+
 }  // namespace
 }  // namespace armwright
 

@@ -8,6 +8,12 @@
 #include "problems/config/problem_readers.hpp"
 
 namespace armwright {
+
+const Setting<int> kPhysicsSubsteps{"substeps",
+                                    {.lower = 1, .upper = 1000},
+                                    PhysicsSettings{}.substeps,
+                                    "physics steps per control period"};
+
 namespace {
 
 constexpr const char* kAuto = "auto";
@@ -37,10 +43,6 @@ const Setting<double> kPhysicsGravity{"gravity_m_per_s2",
                                       {.lower = 0, .upper = 1000},
                                       PhysicsSettings{}.gravity_m_per_s2,
                                       "gravity, downwards along -z"};
-const Setting<int> kPhysicsSubsteps{"substeps",
-                                    {.lower = 1, .upper = 1000},
-                                    PhysicsSettings{}.substeps,
-                                    "physics steps per control period"};
 const Setting<double> kPhysicsErp{
     "erp",
     {.lower = 0, .upper = 1},

@@ -99,6 +99,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
 // engine_reader.cpp: [physics]
 
 extern const SettingTable kPhysicsSettings;
+extern const Setting<int> kPhysicsSubsteps;
 // Chooses the engines among those of `table`, and settles the SIMD level if one of them has SIMD:
 // the last digits of every result depend on it.
 EnginePair read_engines(const ConfigTable& physics, std::span<const EngineRow> table);

@@ -136,7 +136,7 @@ void apply_proposal(const ConfigTable& table, TrackingConfig& config) {
 }
 
 ArmDesign propose_start(const TrackingConfig& config) {
-  return propose_design(config.robot, config.task, get_cases(config));
+  return propose_design(config.robot, config.task, get_cases(config), config.own_effort_limits);
 }
 
 }  // namespace armwright

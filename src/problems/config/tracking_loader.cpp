@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 #include "base/error.hpp"
@@ -10,6 +11,7 @@
 #include "base/text.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "sim/robot/mesh_file.hpp"
+#include "sim/tracking/elasticity.hpp"
 
 namespace armwright {
 
@@ -62,6 +64,27 @@ std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
       throw;
     }
     variables.refuse(kVariablesStart, error.what());
+  }
+}
+
+// Refuses, in [physics], steps that cannot simulate the swinging of an elastic joint.
+void check_elasticity(const ConfigTable& physics, const TrackingConfig& config) {
+  const auto mode = find_fastest_mode(config.robot);
+  if (!mode) {
+    return;
+  }
+  const double period_s = config.task.control_period_s;
+  const double turn_rad = mode->rate_rad_per_s * period_s / config.task.physics.substeps;
+  if (turn_rad > kMostTurnPerStep_rad) {
+    physics.refuse(
+        kPhysicsSubsteps,
+        fmt::format(
+            "the spring of joint '{}' moves at {:.4g} rad/s, which is {:.3g} rad per step of "
+            "{:.4g} s; at most {} rad can be simulated: set physics.substeps to {} or more, "
+            "or make the joint less stiff or less damped",
+            sanitize(config.robot.joints[mode->joint].name), mode->rate_rad_per_s, turn_rad,
+            period_s / config.task.physics.substeps, kMostTurnPerStep_rad,
+            std::ceil(mode->rate_rad_per_s * period_s / kMostTurnPerStep_rad)));
   }
 }
 
@@ -133,6 +156,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   const ConfigTable control = table.get_table_or_empty(kControlSettings);
   config.task = read_task(task, control);
   config.task.physics = read_physics(physics);
+  check_elasticity(physics, config);
   if (!config.task.home.empty() && config.task.home.size() != config.robot.joint_count()) {
     task.refuse(kTaskHome, fmt::format("it must hold {} numbers, one a joint of the robot",
                                        config.robot.joint_count()));

@@ -58,6 +58,7 @@ struct TrackingConfig {
   TrackingObjective objective;
   Perturbation perturbation;
   ArmDesign start;
+  bool own_effort_limits = false;  // whether a proposed start has the effort limits of the robot
   std::vector<DesignParameter> parameters;
   double bounds_factor = 100;
   bool within_effort_limits = false;  // limits the bounds of efforts to the robot's effort limits

@@ -170,7 +170,7 @@ double propose_speed(const RobotModel& robot, TrackingTask task,
 }
 
 ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
-                         const std::vector<TestCase>& cases) {
+                         const std::vector<TestCase>& cases, bool own_limits) {
   const ReadStep step(fmt::format("proposing controllers for robot '{}'", sanitize(robot.name)));
   if (task.limits == LimitPolicy::enforce) {
     task.limits = LimitPolicy::warn;
@@ -196,7 +196,8 @@ ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
     // A tenth of the joint's limit, but at most kMostReserve times the needed effort.
     const double usual =
         std::isfinite(own) ? std::min(kUsualEffortShare * own, kMostReserve * needed) : 0;
-    const double limit = std::min(std::max(needed, usual), own);
+    const double limit =
+        own_limits && std::isfinite(own) ? own : std::min(std::max(needed, usual), own);
     drive.limits = {-limit, limit};
     design.joints.push_back(drive);
   }

@@ -13,7 +13,9 @@
 //                  I = P sqrt(P / m) / 4
 //                These gains are slow, but stable.
 //   efforts      with e = max(2 x the largest effort of inverse dynamics, m x 5 rad/s^2) and the
-//                joint's own limit L, the proposed limit is min(L, max(e, min(L / 10, 10 e)))
+//                joint's own limit L: L if `own_limits` is true and the robot has it, else
+//                min(L, max(e, min(L / 10, 10 e)))
+// Inverse dynamics and M_ii contain rotor inertia, friction and counterbalances.
 #pragma once
 
 #include <vector>
@@ -30,8 +32,9 @@ namespace armwright {
 double propose_speed(const RobotModel& robot, TrackingTask task,
                      const std::vector<TestCase>& cases);
 
-// Returns a design with one PID controller per joint.
+// Returns a design with one PID controller per joint. `own_limits`: whether the robot's own effort
+// limits are proposed as they are.
 ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
-                         const std::vector<TestCase>& cases);
+                         const std::vector<TestCase>& cases, bool own_limits);
 
 }  // namespace armwright
