@@ -12,7 +12,6 @@
 #pragma once
 
 #include "sim/simd/lane_math.hpp"
-#include "sim/simd/lane_tanh.hpp"
 
 namespace armwright::articulated {
 
@@ -26,18 +25,46 @@ struct FrictionNumbers {
   V inverse_stribeck;    // 1 / v_s
 };
 
+// A quotient that is not yet divided, so that several can share one division.
+template <class V>
+struct Fraction {
+  V n, d;
+};
+
+// Returns tanh(x) for x >= 0 with a relative error of at most 3.1e-8, as a quotient of polynomials
+// of x^2 (a fit of least largest error on [0, 9]). Arguments beyond 9 count as 9. The denominator is
+// at least 1 and at most 3000.
+template <class V>
+ARMWRIGHT_INLINE Fraction<V> calc_saturation(V x) {
+  using T = typename V::Scalar;
+  const auto constant = [](double value) __attribute__((always_inline)) {
+    return V(static_cast<T>(value));
+  };
+  const V y = min(constant(9), x);
+  const V s = y * y;
+  return {
+      y * (constant(0.9999999794557656) +
+           s * (constant(0.1338102214186583) +
+                s * (constant(0.003495583970511233) + s * (constant(2.0609013493142966e-05) +
+                                                           s * constant(1.3354564836477197e-08))))),
+      V(1) + s * (constant(0.4671433773371843) + s * (constant(0.025876966396085166) +
+                                                      s * (constant(0.0003285628005775641) +
+                                                           s * constant(7.776519040084557e-07))))};
+}
+
 // Returns phi. `has_stribeck`: s_t may differ from 0. Without it the result has fewer operations
-// and other last bits, so all steps of a simulation must agree on it.
+// and other last bits, so all steps of a simulation must agree on
+// it.
 template <class V>
 ARMWRIGHT_INLINE V calc_friction_chord(const FrictionNumbers<V>& its, V rate, bool has_stribeck) {
   using T = typename V::Scalar;
-  // At rest the chord is the tangent: there tanh(x) / x is 1 to the last bit.
+  // At rest the chord is the tangent: there tanh(x) / x is 1.
   const V speed = max(abs(rate), V(static_cast<T>(1e-30)));
-  const lanes::Fraction<V> rise = lanes::calc_tanh_fraction(speed * its.inverse_transition);
+  const Fraction<V> rise = calc_saturation(speed * its.inverse_transition);
   if (!has_stribeck) {
     return its.viscous + its.breakaway * rise.n / (rise.d * speed);
   }
-  const lanes::Fraction<V> fall = lanes::calc_tanh_fraction(speed * its.inverse_stribeck);
+  const Fraction<V> fall = calc_saturation(speed * its.inverse_stribeck);
   return its.viscous + (its.breakaway * rise.n * fall.d - its.stribeck * fall.n * rise.d) /
                            (rise.d * fall.d * speed);
 }
@@ -63,17 +90,19 @@ ARMWRIGHT_INLINE V calc_balance(const BalanceGrid& grid, V position, bool slides
   const V place =
       min(max((turned + constant(grid.middle - grid.lower)) * constant(grid.inverse_step), V(0)),
           constant(grid.last));  // 0 for NaN
-  alignas(64) T places[V::kLanes];
-  alignas(64) T values[V::kLanes];
-  *reinterpret_cast<V*>(places) = place;
+  const V first = lanes::round_to_integer(max(place - constant(0.5), V(0)));
+  alignas(64) T numbers[V::kLanes];
+  alignas(64) T below[V::kLanes];
+  alignas(64) T above[V::kLanes];
+  *reinterpret_cast<V*>(numbers) = min(first, constant(grid.last - 1));
   for (int lane = 0; lane < V::kLanes; ++lane) {
-    const int at = lanes::to_integer(places[lane]);
-    const int first = at < grid.last ? at : grid.last - 1;
-    const T below = static_cast<T>(grid.efforts[first]);
-    const T rise = static_cast<T>(grid.efforts[first + 1] - grid.efforts[first]);
-    values[lane] = below + (places[lane] - static_cast<T>(first)) * rise;
+    const double* const efforts = grid.efforts + lanes::to_integer(numbers[lane]);
+    below[lane] = static_cast<T>(efforts[0]);
+    above[lane] = static_cast<T>(efforts[1]);
   }
-  return *reinterpret_cast<const V*>(values);
+  const V low = *reinterpret_cast<const V*>(below);
+  return low + (place - *reinterpret_cast<const V*>(numbers)) *
+                   (*reinterpret_cast<const V*>(above) - low);
 }
 
 }  // namespace armwright::articulated

@@ -134,6 +134,10 @@ struct SegmentCall {
   const T* plant = nullptr;               // calc_plant_packs() packs
   const std::uint8_t* drives = nullptr;   // DriveFlag bits, one byte per joint
   const BalanceGrid* balances = nullptr;  // one per joint, the same in all lanes
+  bool has_friction = false;              // a joint has
+  bool has_stribeck = false;              // likewise; then has_friction is true
+  bool has_rare_parts = false;            // perturbed, or a joint is elastic
+  bool measures_apart = false;            // measured positions are not the joints' true ones
   // The following four are for perturbed plants. `past` is null for others.
   T* past = nullptr;           // a ring of `past_length` x joints packs: the positions of the
                                // measured sides after substeps

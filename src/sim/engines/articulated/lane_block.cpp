@@ -245,7 +245,7 @@ void LaneBlock<T>::set_plant(std::size_t first, const Segment& timeline,
     return;
   }
   call.plant = plants_.data() + first / lanes() * plant_size_;
-  call.drives = drives_.data();
+  set_drives(drives_, perturbed_, call);
   call.balances = balances_.data();
   if (!perturbed_) {
     return;

@@ -55,13 +55,13 @@ class SegmentKernel {
     single(kWorstSquared) = V(0);
     dynamics_.set_posture(q, false);
     for (int step = 0; step < call_.steps; ++step) {
-      plant_.show_measured(q);
+      plant_.show_measured();
       control(step);
       plant_.show_true(q);
       const bool measuring = recording || step >= call_.window_start;
       for (int substep = 1; substep <= call_.substeps; ++substep) {
+        const V* const acting = plant_.calc_effort(&effort_[0], substep_s);
         dynamics_.calc_equations(q, rate);
-        const V* const acting = plant_.calc_effort(&effort_[0], q, rate, substep_s);
         plant_.add_inertia(dynamics_);
         dynamics_.solve(acting, &acceleration_[0]);
         chain_.for_up([&](auto i) __attribute__((always_inline)) {
@@ -71,7 +71,7 @@ class SegmentKernel {
           const V pushed = plant_.get_pushed_way(i, way, substep_s);
           way_[i] = substep == 1 ? pushed : way_[i] + pushed;
         });
-        plant_.remember(q);
+        plant_.remember();
         dynamics_.set_posture(q, measuring && substep == call_.substeps);
       }
       if (!check(step)) {

@@ -10,6 +10,137 @@
 
 namespace armwright::articulated {
 
+// What the plants of a pack of lanes do in a step. The functions loop over the joints and are not
+// inlined: the kernels are so long that the processor would run out of decoded instructions.
+template <class V>
+class PlantStep {
+ public:
+  using T = typename V::Scalar;
+
+  // Stores the true positions in `held`, and replaces them by the measured ones. `newest` is the
+  // place of the true positions in the ring of past ones.
+  __attribute__((noinline)) static void show_measured(const SegmentCall<T>& call, int newest,
+                                                      V* held) {
+    const PlantStep plant(call);
+    for (int i = 0; i < call.joints; ++i) {
+      V& q = plant.state(kQ, i);
+      held[i] = q;
+      if (call.past != nullptr) {
+        q = plant.recall(i, newest);
+      } else if (plant.has(kMeasuresMotor, i)) {
+        q = plant.state(kMotor, i);
+      }
+    }
+  }
+  // Stores the positions that a substep ended with at the place `newest`.
+  __attribute__((noinline)) static void remember(const SegmentCall<T>& call, int newest) {
+    const PlantStep plant(call);
+    for (int i = 0; i < call.joints; ++i) {
+      plant.past(newest)[i] = plant.state(plant.has(kMeasuresMotor, i) ? kMotor : kQ, i);
+    }
+  }
+  // Replaces the controllers' efforts by those that act on the links during a substep, and computes
+  // the inertia that joins each joint. Moves the motors of elastic joints to the end of the substep.
+  __attribute__((noinline)) static void act(const SegmentCall<T>& call, V substep_s, V* efforts,
+                                            V* inertia) {
+    const PlantStep plant(call);
+    for (int i = 0; i < call.joints; ++i) {
+      V effort = efforts[i];
+      if (call.past != nullptr) {
+        effort = plant.perturb(i, effort);
+      }
+      if (plant.has(kElastic, i)) {
+        effort = plant.pass_spring(i, effort, substep_s);
+        inertia[i] = V(0);
+      } else {
+        inertia[i] = plant.rub(i, plant.state(kRate, i), substep_s, effort);
+      }
+      if (plant.has(kBalanced, i)) {
+        effort += calc_balance(call.balances[i], plant.state(kQ, i), plant.slides(i));
+      }
+      efforts[i] = effort;
+    }
+  }
+
+ private:
+  ARMWRIGHT_INLINE explicit PlantStep(const SegmentCall<T>& call) : call_(call) {}
+
+  ARMWRIGHT_INLINE bool slides(int joint) const { return (call_.flags[joint] & kPrismatic) != 0; }
+  ARMWRIGHT_INLINE bool has(int flags, int joint) const {
+    return (call_.drives[joint] & flags) != 0;
+  }
+  ARMWRIGHT_INLINE V number(PlantField field, int joint) const {
+    return reinterpret_cast<const V*>(call_.plant)[field * call_.joints + joint];
+  }
+  ARMWRIGHT_INLINE V single(PlantSingle field) const {
+    return reinterpret_cast<const V*>(call_.plant)[kPlantFields * call_.joints + field];
+  }
+  ARMWRIGHT_INLINE V& state(StateField field, int joint) const {
+    return reinterpret_cast<V*>(call_.state)[field * call_.joints + joint];
+  }
+  ARMWRIGHT_INLINE V* past(int place) const {
+    return reinterpret_cast<V*>(call_.past) + place * call_.joints;
+  }
+
+  // Returns the position that the controller measures, delayed and rounded.
+  ARMWRIGHT_INLINE V recall(int i, int newest) const {
+    alignas(64) T lanes[V::kLanes];
+    for (int lane = 0; lane < V::kLanes; ++lane) {
+      int place = newest - call_.delay[lane];
+      place += place < 0 ? call_.past_length : 0;
+      lanes[lane] = call_.past[(place * call_.joints + i) * V::kLanes + lane];
+    }
+    const V angle = *reinterpret_cast<const V*>(lanes);
+    const V quantum = single(kQuantum);
+    const V turned = slides(i) ? angle : lanes::wrap(angle);
+    return select(quantum > V(0), lanes::round_to_integer(turned / quantum) * quantum, angle);
+  }
+
+  // Returns the effort with the perturbation's ripple and friction.
+  ARMWRIGHT_INLINE V perturb(int i, V effort) const {
+    if (!slides(i)) {
+      V sine;
+      V cosine;
+      lanes::calc_sine_cosine(
+          lanes::wrap(state(kQ, i)) * single(kRippleCycles) + number(kRipplePhase, i), sine,
+          cosine);
+      effort = effort + effort * (number(kRipple, i) * sine);
+    }
+    const V rate = state(has(kElastic, i) ? kMotorRate : kRate, i);
+    const V sliding = max(V(-1), min(V(1), rate * single(kRateScale)));
+    return effort - (number(kViscous, i) * rate + number(kCoulomb, i) * sliding);
+  }
+
+  // Moves the motor by a substep and returns the spring's effort at its start.
+  ARMWRIGHT_INLINE V pass_spring(int i, V effort, V substep_s) const {
+    V& place = state(kMotor, i);
+    V& rate = state(kMotorRate, i);
+    const V spring = number(kStiffness, i) * (place - state(kQ, i)) +
+                     number(kDamping, i) * (rate - state(kRate, i));
+    effort -= spring;
+    const V inertia = rub(i, rate, substep_s, effort);
+    rate += substep_s * (effort / inertia);
+    place += substep_s * rate;
+    return spring;
+  }
+
+  // Takes the friction at a rate from the effort. Returns the armature with what is implicit in the
+  // friction.
+  ARMWRIGHT_INLINE V rub(int i, V rate, V substep_s, V& effort) const {
+    if (!has(kHasFriction, i)) {
+      return number(kArmature, i);
+    }
+    const V chord = calc_friction_chord(
+        FrictionNumbers<V>{number(kDrag, i), number(kBreakaway, i), number(kStribeck, i),
+                           number(kInverseTransition, i), number(kInverseStribeck, i)},
+        rate, has(kHasStribeck, i));
+    effort -= number(kOffset, i) + chord * rate;
+    return number(kArmature, i) + substep_s * chord;
+  }
+
+  const SegmentCall<T>& call_;
+};
+
 template <class V, class Chain, bool kIdeal>
 class LanePlant;
 
@@ -19,149 +150,61 @@ class LanePlant<V, Chain, false> {
   using T = typename V::Scalar;
 
   ARMWRIGHT_INLINE LanePlant(SegmentCall<T>& call, const Chain& chain, V*& scratch)
-      : call_(call), chain_(chain), newest_(call.newest) {
-    acting_effort_.place(scratch, call.joints);
-    inertia_.place(scratch, call.joints);
-    held_.place(scratch, call.joints);
+      : call_(call),
+        chain_(chain),
+        newest_(call.newest),
+        effort_(scratch),
+        inertia_(scratch + call.joints),
+        held_(scratch + 2 * call.joints) {
+    scratch += 3 * call.joints;
   }
 
-  ARMWRIGHT_INLINE void show_measured(V* q) {
-    chain_.for_up([&](auto i) __attribute__((always_inline)) {
-      held_[i] = q[i];
-      if (is_perturbed()) {
-        q[i] = recall(i);
-      } else if (has(kMeasuresMotor, i)) {
-        q[i] = state(kMotor, i);
-      }
-    });
+  // show_measured() replaces the true positions in the state by those that the controllers measure;
+  // show_true() restores them.
+  ARMWRIGHT_INLINE void show_measured() const {
+    if (call_.measures_apart) {
+      PlantStep<V>::show_measured(call_, newest_, held_);
+    }
   }
   ARMWRIGHT_INLINE void show_true(V* q) const {
-    chain_.for_up([&](auto i) __attribute__((always_inline)) { q[i] = held_[i]; });
+    if (call_.measures_apart) {
+      chain_.for_up([&](auto i) __attribute__((always_inline)) { q[i] = held_[i]; });
+    }
   }
   // Stores the positions that a substep ended with.
-  ARMWRIGHT_INLINE void remember(const V* q) {
-    if (!is_perturbed()) {
-      return;
+  ARMWRIGHT_INLINE void remember() {
+    if (call_.past != nullptr) {
+      newest_ = newest_ + 1 == call_.past_length ? 0 : newest_ + 1;
+      PlantStep<V>::remember(call_, newest_);
     }
-    newest_ = newest_ + 1 == call_.past_length ? 0 : newest_ + 1;
-    chain_.for_up([&](auto i) __attribute__((always_inline)) {
-      past(newest_)[i] = has(kMeasuresMotor, i) ? state(kMotor, i) : q[i];
-    });
   }
 
   // Returns the efforts that act on the links during a substep, given those of the controllers.
   // Moves the motors of elastic joints to its end.
-  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, const V* q, const V* rate, V substep_s) {
-    chain_.for_up([&](auto i) __attribute__((always_inline)) {
-      V acting = effort[i];
-      if (is_perturbed()) {
-        acting = perturb(i, acting, q, rate);
-      }
-      if (has(kElastic, i)) {
-        acting = pass_spring(i, acting, q[i], rate[i], substep_s);
-      } else if (has(kHasFriction, i)) {
-        const V chord = calc_chord(i, rate[i]);
-        acting -= number(kOffset, i) + chord * rate[i];
-        inertia_[i] = number(kArmature, i) + substep_s * chord;
-      } else {
-        inertia_[i] = number(kArmature, i);
-      }
-      if (has(kBalanced, i)) {
-        acting += calc_balance(call_.balances[i], q[i], chain_.slides(i));
-      }
-      acting_effort_[i] = acting;
-    });
-    return &acting_effort_[0];
+  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, V substep_s) {
+    chain_.for_up([&](auto i) __attribute__((always_inline)) { effort_[i] = effort[i]; });
+    PlantStep<V>::act(call_, substep_s, effort_, inertia_);
+    return effort_;
   }
   // Adds the inertia of the motors of rigid joints, and what is implicit in the friction.
-  ARMWRIGHT_INLINE void add_inertia(auto& dynamics) const {
-    chain_.for_up([&](auto i) __attribute__((always_inline)) {
-      if (has(kHasArmature | kHasFriction, i) && !has(kElastic, i)) {
-        dynamics.add_inertia(i, inertia_[i]);
-      }
-    });
+  template <class Dynamics>
+  ARMWRIGHT_INLINE void add_inertia(Dynamics& dynamics) const {
+    chain_.for_up([&](auto i)
+                      __attribute__((always_inline)) { dynamics.add_inertia(i, inertia_[i]); });
   }
   // Returns how far a controller's effort has pushed in the substep: the way of the link, or of the
   // motor of an elastic joint.
   ARMWRIGHT_INLINE V get_pushed_way(int i, V way, V substep_s) const {
-    return has(kElastic, i) ? substep_s * state(kMotorRate, i) : way;
+    return (call_.drives[i] & kElastic) != 0
+               ? substep_s * reinterpret_cast<const V*>(call_.state)[kMotorRate * call_.joints + i]
+               : way;
   }
 
  private:
-  ARMWRIGHT_INLINE int joints() const { return chain_.joints(); }
-  ARMWRIGHT_INLINE bool is_perturbed() const { return call_.past != nullptr; }
-  ARMWRIGHT_INLINE bool has(int flags, int joint) const {
-    return (call_.drives[joint] & flags) != 0;
-  }
-  ARMWRIGHT_INLINE V number(PlantField field, int joint) const {
-    return reinterpret_cast<const V*>(call_.plant)[field * joints() + joint];
-  }
-  ARMWRIGHT_INLINE V single(PlantSingle field) const {
-    return reinterpret_cast<const V*>(call_.plant)[kPlantFields * joints() + field];
-  }
-  ARMWRIGHT_INLINE V& state(StateField field, int joint) const {
-    return reinterpret_cast<V*>(call_.state)[field * joints() + joint];
-  }
-  ARMWRIGHT_INLINE V* past(int place) const {
-    return reinterpret_cast<V*>(call_.past) + place * joints();
-  }
-
-  // Returns the position that the controller measures, delayed and rounded.
-  ARMWRIGHT_INLINE V recall(int i) const {
-    alignas(64) T lanes[V::kLanes];
-    for (int lane = 0; lane < V::kLanes; ++lane) {
-      int place = newest_ - call_.delay[lane];
-      place += place < 0 ? call_.past_length : 0;
-      lanes[lane] = call_.past[(place * joints() + i) * V::kLanes + lane];
-    }
-    const V angle = *reinterpret_cast<const V*>(lanes);
-    const V quantum = single(kQuantum);
-    const V turned = chain_.slides(i) ? angle : lanes::wrap(angle);
-    return select(quantum > V(0), lanes::round_to_integer(turned / quantum) * quantum, angle);
-  }
-
-  // Returns the effort with the perturbation's ripple and friction.
-  ARMWRIGHT_INLINE V perturb(int i, V acting, const V* q, const V* rate) const {
-    if (!chain_.slides(i)) {
-      V sine;
-      V cosine;
-      lanes::calc_sine_cosine(lanes::wrap(q[i]) * single(kRippleCycles) + number(kRipplePhase, i),
-                              sine, cosine);
-      acting = acting + acting * (number(kRipple, i) * sine);
-    }
-    const V turning = has(kElastic, i) ? state(kMotorRate, i) : rate[i];
-    const V sliding = max(V(-1), min(V(1), turning * single(kRateScale)));
-    return acting - (number(kViscous, i) * turning + number(kCoulomb, i) * sliding);
-  }
-
-  ARMWRIGHT_INLINE V calc_chord(int i, V rate) const {
-    return calc_friction_chord(
-        FrictionNumbers<V>{number(kDrag, i), number(kBreakaway, i), number(kStribeck, i),
-                           number(kInverseTransition, i), number(kInverseStribeck, i)},
-        rate, has(kHasStribeck, i));
-  }
-
-  // Moves the motor by a substep and returns the spring's effort at its start.
-  ARMWRIGHT_INLINE V pass_spring(int i, V acting, V q, V rate, V substep_s) {
-    V& place = state(kMotor, i);
-    V& speed = state(kMotorRate, i);
-    const V spring = number(kStiffness, i) * (place - q) + number(kDamping, i) * (speed - rate);
-    V inertia = number(kArmature, i);
-    acting -= spring;
-    if (has(kHasFriction, i)) {
-      const V chord = calc_chord(i, speed);
-      acting -= number(kOffset, i) + chord * speed;
-      inertia += substep_s * chord;
-    }
-    speed += substep_s * (acting / inertia);
-    place += substep_s * speed;
-    return spring;
-  }
-
   SegmentCall<T>& call_;
-  const Chain& chain_;
+  Chain chain_;  // a copy: a reference would keep the whole kernel in memory
   int newest_;
-  PackList<V, Chain::kJoints> acting_effort_, inertia_, held_;
+  V *effort_, *inertia_, *held_;  // one pack per joint
 };
 
 // The ideal plant: every function does nothing.
@@ -170,14 +213,14 @@ class LanePlant<V, Chain, true> {
  public:
   ARMWRIGHT_INLINE LanePlant(SegmentCall<typename V::Scalar>& /*call*/, const Chain& /*chain*/,
                              V*& /*scratch*/) {}
-  ARMWRIGHT_INLINE void show_measured(V* /*q*/) const {}
+  ARMWRIGHT_INLINE void show_measured() const {}
   ARMWRIGHT_INLINE void show_true(V* /*q*/) const {}
-  ARMWRIGHT_INLINE void remember(const V* /*q*/) const {}
-  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, const V* /*q*/, const V* /*rate*/,
-                                        V /*substep_s*/) const {
+  ARMWRIGHT_INLINE void remember() const {}
+  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, V /*substep_s*/) const {
     return effort;
   }
-  ARMWRIGHT_INLINE void add_inertia(auto& /*dynamics*/) const {}
+  template <class Dynamics>
+  ARMWRIGHT_INLINE void add_inertia(Dynamics& /*dynamics*/) const {}
   ARMWRIGHT_INLINE V get_pushed_way(int /*joint*/, V way, V /*substep_s*/) const { return way; }
 };
 

@@ -269,7 +269,7 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     call.alive = 1;
     call.final_state = final_state.data();
     call.plant = plant.empty() ? nullptr : plant.data();
-    call.drives = flags.data();
+    set_drives(flags, false, call);
     call.balances = balances.data();
     // There are fewer kernels than for simulations because each takes long to compile.
     if (call.plant != nullptr) {

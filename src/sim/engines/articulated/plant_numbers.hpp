@@ -1,6 +1,8 @@
 // The numbers of a joint's plant (sim/robot/joint_plant.hpp) as the kernels get them.
 #pragma once
 
+#include <vector>
+
 #include "sim/dynamics/joint_effort.hpp"
 #include "sim/engines/articulated/kernels.hpp"
 
@@ -14,6 +16,17 @@ inline std::uint8_t get_drive_flags(const JointPlant& plant) {
       flag(plant.stribeck != 0, kHasStribeck) | flag(plant.is_elastic(), kElastic) |
       flag(plant.is_elastic() && plant.measured == MeasuredSide::motor, kMeasuresMotor) |
       flag(!plant.counterbalance.efforts.empty(), kBalanced));
+}
+
+// Sets what the call needs to know of the joints' DriveFlag bits. `perturbed`: the plants have a
+// PlantVariation.
+template <class T>
+void set_drives(const std::vector<std::uint8_t>& drives, bool perturbed, SegmentCall<T>& call) {
+  call.drives = drives.data();
+  call.measures_apart = perturbed;
+  for (const std::uint8_t flags : drives) {
+    call.measures_apart |= (flags & kMeasuresMotor) != 0;
+  }
 }
 
 // Calls set(field, number) for each PlantField of a JointPlant.

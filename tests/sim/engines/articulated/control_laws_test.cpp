@@ -134,20 +134,20 @@ TEST(ControlLaws, TanhIsWithinItsBounds) {
   double worst = 0;
   double worst_float = 0;
   for (double x = -25; x < 25; x += 1.0 / 1024) {
-    worst = std::max(worst, std::abs(lanes::calc_tanh(Double(x)).v - std::tanh(x)));
+    worst = std::max(worst, std::abs(controllers::calc_tanh(Double(x)).v - std::tanh(x)));
     const auto single = static_cast<float>(x);
-    worst_float =
-        std::max(worst_float, std::abs(static_cast<double>(lanes::calc_tanh(Float(single)).v) -
-                                       std::tanh(static_cast<double>(single))));
+    worst_float = std::max(worst_float,
+                           std::abs(static_cast<double>(controllers::calc_tanh(Float(single)).v) -
+                                    std::tanh(static_cast<double>(single))));
   }
   EXPECT_LT(worst, 1e-15);
   EXPECT_GT(worst, 0);
   EXPECT_LT(worst_float, 1e-6);
   // Small arguments keep their digits.
   for (double x = 1; x > 1e-300; x *= 0.37) {
-    EXPECT_NEAR(lanes::calc_tanh(Double(x)).v / std::tanh(x), 1, 1e-14);
+    EXPECT_NEAR(controllers::calc_tanh(Double(x)).v / std::tanh(x), 1, 1e-14);
   }
-  EXPECT_TRUE(std::isnan(lanes::calc_tanh(Double(std::nan(""))).v));
+  EXPECT_TRUE(std::isnan(controllers::calc_tanh(Double(std::nan(""))).v));
 }
 
 class EveryController : public testing::TestWithParam<std::string> {
