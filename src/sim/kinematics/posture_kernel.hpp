@@ -467,7 +467,7 @@ struct Search {
 
   // Holds joints at the ends of their ranges and computes the step again, until no other joint
   // leaves its range. Lanes with live = 0 are left alone. Sets live = 0 where a step is not finite.
-  __attribute__((noinline)) void hold_joints(V damping, V& live) {
+  ARMWRIGHT_INLINE void hold_joints(V damping, V& live) {
     const V zero = 0.0, one = 1.0, half = 0.5;
     V is_free[kMostJoints];
     V fixed[kMostJoints];
