@@ -95,6 +95,35 @@ void run_part(benchmark::State& state, SimdLevel level, benchmarks::Part part) {
   state.counters["ns_per_step"] = 1e9 * calc_median(seconds) / kRounds / lanes;
 }
 
+// Makes the target tables of 16 cases with both solvers of the numeric inverse kinematics, by turns.
+void run_targets(benchmark::State& state, const std::string& robot) {
+  const LoadedProblem problem = load_problem("robot", std::vector{"robot.urdf=" + robot});
+  TrackingTask task = problem.tracking()->config().task;
+  const TrackingSetup lanes(problem.tracking()->config().robot, task);
+  task.solver = NumericSolver::scalar;
+  const TrackingSetup scalar(problem.tracking()->config().robot, task);
+  std::vector<TestCase> cases;
+  for (std::uint64_t i = 0; i < 16; ++i) {
+    cases.push_back(problem.tracking()->get_set("test/2").make_case(i));
+  }
+  std::vector<double> own, ratio, alone_ratio;
+  for (auto _ : state) {
+    const double together = measure_cpu_s([&] { lanes.make_targets(cases); });
+    const double alone = measure_cpu_s([&] {
+      for (const TestCase& its : cases) {
+        lanes.make_targets(its);
+      }
+    });
+    const double before = measure_cpu_s([&] { scalar.make_targets(cases); });
+    own.push_back(together / static_cast<double>(cases.size()));
+    ratio.push_back(before / together);
+    alone_ratio.push_back(before / alone);
+  }
+  state.counters["ms_per_case"] = 1e3 * calc_median(own);
+  state.counters["times_as_fast_as_scalar"] = calc_median(ratio);
+  state.counters["alone_times_as_fast"] = calc_median(alone_ratio);
+}
+
 // Runs the same number of simulations on one thread and on two, and as many designs on one case as
 // cases of one design. Target tables exist before. Measures wall-clock time.
 void run_sharing(benchmark::State& state) {
@@ -155,6 +184,12 @@ void add_rows() {
           ->Iterations(25)
           ->Unit(benchmark::kMillisecond);
     }
+  }
+  for (const char* robot : {"arm7", "irb4600_six"}) {
+    benchmark::RegisterBenchmark((std::string("targets/") + robot).c_str(),
+                                 [robot](benchmark::State& state) { run_targets(state, robot); })
+        ->Iterations(9)
+        ->Unit(benchmark::kMillisecond);
   }
   benchmark::RegisterBenchmark("sharing", run_sharing)
       ->Iterations(40)

@@ -55,17 +55,17 @@ struct OptimizeOptions : PlanOptions {
   bool quiet = false;
 };
 
-// Makes the plan of the run and chooses its folder. Returns whether the folder holds a run of version
-// 1.0 on the plain form of a function. Then `options` and the plan get the plain form too.
-bool make_request(OptimizeOptions& options, RunRequest& request) {
+// Makes the plan of the run and chooses its folder. If the folder holds a run of version 1.0 that
+// needs a setting (find_old_setting()), returns this setting; `options` and the plan get it too.
+std::string make_request(OptimizeOptions& options, RunRequest& request) {
   request.plan = options.make_plan();
   request.folder = options.folder.choose(make_run_name(request.plan));
-  if (!needs_plain_form(request.folder, request.plan.problem, options.overrides.set)) {
-    return false;
+  std::string old = find_old_setting(request.folder, request.plan.problem, options.overrides.set);
+  if (!old.empty()) {
+    options.overrides.set.push_back(old);
+    request.plan.problem = load_problem(options.get_problem(), options.get_overrides());
   }
-  options.overrides.set.emplace_back(kPlainForm);
-  request.plan.problem = load_problem(options.get_problem(), options.get_overrides());
-  return true;
+  return old;
 }
 
 // Returns the command that resumes this run. It is the typed command without --new, and with --out
@@ -198,13 +198,16 @@ int run_optimize(OptimizeOptions options, Session& session) {
         request.jobs);
   }
   apply_time_limit(options.time_limit, session.stop);
-  const bool has_plain_form = make_request(options, request);
+  const std::string old_setting = make_request(options, request);
   std::vector<std::string> notes = check_paths(request.plan.problem);
-  if (has_plain_form) {
+  if (!old_setting.empty()) {
     notes.push_back(
-        fmt::format("version 1.0 began this run on the plain form of the function, so the run "
-                    "keeps it ({}); --new begins a run on the problem as it is now",
-                    kPlainForm));
+        fmt::format("version 1.0 began this run {}, so the run keeps it ({}); --new begins a run "
+                    "on the problem "
+                    "as it is now",
+                    old_setting == kPlainForm ? "on the plain form of the function"
+                                              : "with its own solver of the inverse kinematics",
+                    old_setting));
   }
   request.command_line = make_command(options, session, request.folder);
   if (!options.quiet) {

@@ -73,8 +73,13 @@ std::vector<std::string> check_paths(const LoadedProblem& problem) {
   for (const std::string& name :
        {problem.sets.training, problem.sets.validation, problem.sets.test}) {
     const TestSet set = problem.tracking()->get_set(name);
+    std::vector<TestCase> cases;
     for (std::uint64_t number = 0; number < (is_path ? 1 : kCasesOfSet); ++number) {
-      const TargetTable table = looking.make_targets(set.make_case(number));
+      cases.push_back(set.make_case(number));
+    }
+    const std::vector<TargetTable> tables = looking.make_targets(cases);
+    for (std::uint64_t number = 0; number < tables.size(); ++number) {
+      const TargetTable& table = tables[number];
       ++looked_at;
       if (!table.unreachable.empty()) {
         ++faulty;

@@ -122,6 +122,9 @@ extern const Setting<std::vector<double>> kTaskHome, kTaskToolRpy, kWorkspaceCen
 inline constexpr double kMostPeriods = 1e7;
 
 TrackingTask read_task(const ConfigTable& table, const ConfigTable& control);
+// Records the solver of numeric inverse kinematics in `table`, the task's, unless it is that of
+// version 1.0 or the arm has a closed form.
+void settle_solver(const ConfigTable& table, const TrackingSetup& setup);
 WorkspaceSphere read_workspace(const ConfigTable& table);
 // Refuses values that are each allowed, but together make a test case longer than kMostPeriods.
 void check_length(const ConfigTable& table, const ConfigTable& control,

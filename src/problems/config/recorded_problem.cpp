@@ -44,6 +44,13 @@ void rename_old_keys(nlohmann::json& resolved) {
   }
 }
 
+// Gives keys that version 1.0 did not have the value that says what it did.
+void add_old_values(nlohmann::json& resolved) {
+  if (resolved.contains("robot") && !resolved["task"].contains("solver")) {
+    resolved["task"]["solver"] = "scalar";
+  }
+}
+
 }  // namespace
 
 LoadedProblem load_recorded_problem(const std::string& resolved_json, const std::string& name,
@@ -60,6 +67,7 @@ LoadedProblem load_recorded_problem(const std::string& resolved_json, const std:
       resolved.erase("replicate");
     }
     rename_old_keys(resolved);
+    add_old_values(resolved);
     for (const auto& [key, value] : resolved.items()) {
       toml += write_toml(key) + " = " + write_toml(value) + "\n";
     }

@@ -76,6 +76,11 @@ const Setting<double> kTaskLoad{
 const Setting<std::string> kTaskKinematics{
     "kinematics", kinematics_names, "auto",
     "inverse kinematics; auto: the closed form if the arm is a palletiser, else numeric"};
+const Setting<std::string> kTaskSolver{
+    "solver", numeric_solver_names, "lanes",
+    "how numeric inverse kinematics is computed; lanes: many times as fast; scalar: to the last "
+    "bit "
+    "as in version 1.0, whose recorded configurations lack this key"};
 const Setting<std::string> kTaskLimits{
     "limits", limit_policy_names, "ignore",
     "what happens if a path exceeds joint ranges or speeds, or meets singularities: nothing, a "
@@ -118,7 +123,7 @@ const SettingTable kTaskSettings{
     .key = "task",
     .settings = {&kTaskSignal, &kTaskSpeed, &kTaskDistanceLimit, &kTaskTrapezoidAcceleration,
                  &kTaskRest, &kTaskCountFirstPoint, &kTaskIkBug, &kTaskLoad, &kTaskKinematics,
-                 &kTaskLimits, &kTaskOrientation, &kTaskToolRpy, &kTaskToolAxis,
+                 &kTaskSolver, &kTaskLimits, &kTaskOrientation, &kTaskToolRpy, &kTaskToolAxis,
                  &kTaskOrientationArm, &kTaskHome}};
 const SettingTable kControlSettings{.key = "control",
                                     .settings = {&kControlPeriod, &kControlController}};
@@ -156,6 +161,7 @@ TrackingTask read_task(const ConfigTable& table, const ConfigTable& control) {
   task.ik_bug = table.get(kTaskIkBug);
   task.load_kg = table.get(kTaskLoad);
   task.kinematics = static_cast<KinematicsChoice>(table.get_choice(kTaskKinematics));
+  task.solver = static_cast<NumericSolver>(table.get_choice(kTaskSolver));
   task.limits = static_cast<LimitPolicy>(table.get_choice(kTaskLimits));
   task.tool = read_tool(table);
   if (const auto home = table.find(kTaskHome)) {
@@ -169,6 +175,15 @@ TrackingTask read_task(const ConfigTable& table, const ConfigTable& control) {
   }
   task.control_period_s = control.get(kControlPeriod);
   return task;
+}
+
+void settle_solver(const ConfigTable& table, const TrackingSetup& setup) {
+  if (setup.has_closed_form() || setup.task().solver == NumericSolver::scalar) {
+    table.leave_out(kTaskSolver);  // so recorded version 1.0
+  } else {
+    table.settle(kTaskSolver,
+                 numeric_solver_names()[static_cast<std::size_t>(setup.task().solver)]);
+  }
 }
 
 WorkspaceSphere read_workspace(const ConfigTable& table) {

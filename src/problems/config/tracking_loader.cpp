@@ -176,6 +176,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   check_limits(table.get_table_or_empty(kObjectiveSettings), config);
   config.requirements = read_requirements(table.get_tables_or_empty(kRequirementSettings), config);
   loaded.problem = make_tracking(std::move(config), variables, urdf);
+  settle_solver(task, loaded.tracking()->setup());
 }
 
 }  // namespace armwright

@@ -1,14 +1,17 @@
 // A cache of values that depend on a test case only, within a memory limit.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <list>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace armwright {
 
@@ -25,6 +28,11 @@ class CaseCache {
   // lives as long as a caller holds it. Throws what make() throws.
   template <class Make>
   std::shared_ptr<const Value> get(const std::string& set, std::uint64_t number, const Make& make);
+  // Makes the values that the cache lacks and no other thread is making, all with one call of
+  // make(numbers), which returns one value per number. The caller calls get() for every number
+  // afterwards; only then the limit counts them. Throws what make() throws.
+  template <class Make>
+  void fill(const std::string& set, std::span<const std::uint64_t> numbers, const Make& make);
   // Drops all values. Thread-safe.
   void clear();
   // Returns the number of values made so far.
@@ -87,6 +95,45 @@ std::shared_ptr<const Value> CaseCache<Value>::get(const std::string& set, std::
     }
   }
   return {entry, &entry->value};
+}
+
+template <class Value>
+template <class Make>
+void CaseCache<Value>::fill(const std::string& set, std::span<const std::uint64_t> numbers,
+                            const Make& make) {
+  std::vector<std::shared_ptr<Entry>> entries;
+  std::vector<std::unique_lock<std::mutex>> locks;
+  std::vector<std::uint64_t> lacking;
+  for (const std::uint64_t number : numbers) {
+    std::shared_ptr<Entry> entry;
+    {
+      const std::lock_guard lock(mutex_);
+      auto& slot = entries_[Key(set, number)];
+      if (!slot) {
+        slot = std::make_shared<Entry>();
+      }
+      entry = slot;
+    }
+    if (std::ranges::find(entries, entry) != entries.end()) {
+      continue;
+    }
+    // Waiting here while other entries are locked could block two threads for ever.
+    std::unique_lock lock(entry->mutex, std::try_to_lock);
+    if (lock && !entry->made) {
+      entries.push_back(entry);
+      locks.push_back(std::move(lock));
+      lacking.push_back(number);
+    }
+  }
+  if (lacking.empty()) {
+    return;
+  }
+  std::vector<Value> values = make(std::span<const std::uint64_t>(lacking));
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    entries[i]->value = std::move(values[i]);
+    entries[i]->made = true;
+    ++computed_;
+  }
 }
 
 template <class Value>

@@ -80,6 +80,19 @@ Plant TrackingInputs::make_plant(const TestSet& set, std::uint64_t number) const
   return plant;
 }
 
+void TrackingInputs::make_ahead(const TestSet& set, std::span<const std::uint64_t> numbers) const {
+  if (setup_->has_closed_form()) {
+    return;
+  }
+  targets_.fill(set.name(), numbers, [&](std::span<const std::uint64_t> lacking) {
+    std::vector<TestCase> cases;
+    for (const std::uint64_t number : lacking) {
+      cases.push_back(set.make_case(number));
+    }
+    return setup_->make_targets(cases);
+  });
+}
+
 TrackingInputs::PreparedCase TrackingInputs::prepare_case(CaseRole role, const TestSet& set,
                                                           std::uint64_t number) const {
   auto targets =

@@ -36,6 +36,11 @@ class TrackingInputs {
     std::shared_ptr<const TargetTable> targets;  // of the nominal arm and task
     std::shared_ptr<const Plant> plant;          // null: the nominal plant
   };
+  // The most cases whose target tables make_ahead() should make at once.
+  static constexpr std::size_t kAhead = 64;
+  // Makes the target tables that the cache lacks, for prepare_case() of each of these cases. Tables
+  // of numeric kinematics are made faster together than one by one.
+  void make_ahead(const TestSet& set, std::span<const std::uint64_t> numbers) const;
   // Throws Error{bad_data} if no point of the case counts.
   PreparedCase prepare_case(CaseRole role, const TestSet& set, std::uint64_t number) const;
 

@@ -233,6 +233,7 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
   std::vector<std::shared_ptr<const void>> owned;
   std::vector<TrackingJob> tracking;
   tracking.reserve(jobs.size());
+  std::size_t looked_ahead = 0;  // the jobs whose target tables were asked for
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const CaseJob& job = jobs[i];
     const auto [candidate, is_new] = candidates.try_emplace(job.x.data());
@@ -243,6 +244,17 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
     if (i == 0 || job.block != jobs[i - 1].block) {
       set = get_set(job.block->set);
       cases.emplace_back();
+    }
+    if (i == looked_ahead) {
+      std::vector<std::uint64_t> numbers;
+      for (; looked_ahead < jobs.size() && jobs[looked_ahead].block == job.block &&
+             numbers.size() < TrackingInputs::kAhead;
+           ++looked_ahead) {
+        if (numbers.empty() || numbers.back() != jobs[looked_ahead].number) {
+          numbers.push_back(jobs[looked_ahead].number);
+        }
+      }
+      inputs_.make_ahead(*set, numbers);
     }
     auto its_case = cases.back().find(job.number);
     if (its_case == cases.back().end()) {
@@ -333,6 +345,11 @@ std::vector<MeasuredCase> TrackingProblem::simulate_judged(
   std::vector<std::shared_ptr<const void>> owned;
   std::vector<TrackingJob> jobs;
   for (std::size_t i = 0; i < count; ++i) {
+    if (i % TrackingInputs::kAhead == 0) {
+      std::vector<std::uint64_t> numbers(std::min(count - i, TrackingInputs::kAhead));
+      std::iota(numbers.begin(), numbers.end(), first + i);
+      inputs_.make_ahead(set, numbers);
+    }
     cases.push_back(inputs_.prepare_case(CaseRole::test, set, first + i));
     jobs.push_back(inputs_.make_job(design, *design_setup, cases.back(), owned));
     jobs.back().recording = recording;

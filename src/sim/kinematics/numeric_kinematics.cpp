@@ -6,11 +6,12 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "base/error.hpp"
-#include "base/random.hpp"
 #include "base/text.hpp"
+#include "sim/simd/simd_level.hpp"
 
 namespace armwright {
 namespace {
@@ -74,6 +75,11 @@ std::string describe_task(ToolOrientation orientation) {
 
 }  // namespace
 
+const std::vector<std::string>& numeric_solver_names() {
+  static const std::vector<std::string> names = {"lanes", "scalar"};
+  return names;
+}
+
 struct NumericKinematics::Posture {
   Vector3d axis[kMostJoints];
   Vector3d place[kMostJoints];
@@ -82,12 +88,15 @@ struct NumericKinematics::Posture {
 };
 
 NumericKinematics::NumericKinematics(const RobotModel& robot, const ToolTask& tool,
-                                     std::vector<double> home, bool within_limits)
+                                     std::vector<double> home, bool within_limits,
+                                     NumericSolver solver)
     : tool_(tool),
       tip_turn_(robot.tip_pose.linear()),
       tip_place_(robot.tip_pose.translation()),
       home_(std::move(home)),
-      within_limits_(within_limits) {
+      within_limits_(within_limits),
+      solver_(solver),
+      solve_lanes_(postures::get_solve(find_best_simd())) {
   const std::size_t n = robot.joint_count();
   if (n > kMostJoints) {
     throw Error(ErrorKind::bad_data,
@@ -122,6 +131,64 @@ NumericKinematics::NumericKinematics(const RobotModel& robot, const ToolTask& to
   }
   length_m_ = std::max(length_m_, kShortest_m);
   find_rank();
+  make_lane_chain(robot);
+}
+
+// Let B be the rotation that takes z to a joint's axis, in the joint's frame, and A the rotation of
+// the next joint's origin. The next joint's B is chosen such that B^T A B_next = Rz(turn) Rx(tilt).
+void NumericKinematics::make_lane_chain(const RobotModel& robot) {
+  postures::Chain& chain = lane_chain_;
+  chain.joints = static_cast<int>(chain_.size());
+  chain.within_limits = within_limits_;
+  chain.orientation = tool_.orientation;
+  chain.arm_m = tool_.arm_m;
+  chain.tolerance_m = kTolerance * length_m_;
+  chain.least_damping = kDamping;
+  Vector3d::Map(chain.tool_axis) = tool_.axis;
+  Matrix3d basis = Matrix3d::Identity();  // B of the joint before
+  double base_turn_rad = 0;
+  double* turn_before = &base_turn_rad;
+  for (std::size_t i = 0; i < chain_.size(); ++i) {
+    const Part& part = chain_[i];
+    postures::ChainJoint& joint = chain.joint[i];
+    const Vector3d axis = basis.transpose() * (part.turn * part.axis.normalized());
+    joint.tilt_cos = axis.z();
+    joint.tilt_sin = std::hypot(axis.x(), axis.y());
+    // Angles that are multiples of a right angle up to rounding cost less. Parallel axes have no
+    // common normal; any turn is right.
+    constexpr double kRounding = 1e-14;
+    if (joint.tilt_sin < kRounding) {
+      joint.tilt_sin = 0;
+      joint.tilt_cos = std::copysign(1.0, axis.z());
+    } else if (std::abs(joint.tilt_cos) < kRounding) {
+      joint.tilt_cos = 0;
+      joint.tilt_sin = 1;
+    }
+    *turn_before = joint.tilt_sin == 0 ? 0 : std::atan2(axis.x(), -axis.y());
+    Matrix3d tilt;
+    tilt << 1, 0, 0, 0, joint.tilt_cos, -joint.tilt_sin, 0, joint.tilt_sin, joint.tilt_cos;
+    basis = basis * Eigen::AngleAxisd(*turn_before, Vector3d::UnitZ()).toRotationMatrix();
+    Vector3d::Map(joint.place_m) = basis.transpose() * part.place;
+    basis = part.turn.transpose() * basis * tilt;
+    joint.slides = part.slides;
+    joint.lower = part.lower;
+    joint.upper = part.upper;
+    turn_before = &joint.turn_rad;
+    chain.reach_m += part.place.norm();
+    if (part.slides) {
+      chain.reach_m += within_limits_ ? std::max(std::abs(part.lower), std::abs(part.upper))
+                                      : std::numeric_limits<double>::infinity();
+    }
+  }
+  chain.base_turn_cos = std::cos(base_turn_rad);
+  chain.base_turn_sin = std::sin(base_turn_rad);
+  chain.reach_m += tip_place_.norm();
+  Vector3d::Map(chain.tip_place_m) = basis.transpose() * robot.tip_pose.translation();
+  const Matrix3d tip_turn = basis.transpose() * robot.tip_pose.linear();
+  for (int row = 0; row < 3; ++row) {
+    Vector3d::Map(chain.tip_turn[row]) = tip_turn.row(row);
+  }
+  Vector3d::Map(chain.last_tool_axis) = tip_turn * tool_.axis;
 }
 
 void NumericKinematics::find_rank() {
@@ -344,62 +411,144 @@ bool NumericKinematics::improve(const Jacobian& jacobian, const Error6& error, c
   return true;
 }
 
-bool NumericKinematics::solve(const ToolPose& target, const Vector& wish, int iterations,
-                              double longest_step, Vector& q) const {
-  const Vector nothing = Vector::Zero(q.size());
+bool NumericKinematics::solve(Approach& search) const {
+  const Vector nothing = Vector::Zero(search.q.size());
   Posture posture;
   for (int i = 0;; ++i) {
-    calc_posture(q, posture);
-    const Error6 error = calc_error(target, posture);
+    calc_posture(search.q, posture);
+    const Error6 error = calc_error(search.target, posture);
     if (i > 0 && error.norm() <= kTolerance * length_m_) {
       return true;
     }
-    if (i == iterations ||
-        !improve(calc_jacobian(posture), error, i == 0 ? wish : nothing, longest_step, q)) {
+    if (i == search.iterations ||
+        !improve(calc_jacobian(posture), error, i == 0 ? search.wish : nothing, search.longest_step,
+                 search.q)) {
       return false;
     }
   }
 }
 
-bool NumericKinematics::follow(const ToolPose& target, std::span<const double> wish,
-                               std::span<double> q) const {
-  Vector posture = to_vector(q);
-  const bool reached = solve(target, to_vector(wish), kFollowIterations, kFollowStep, posture);
-  copy(posture, q);
-  return reached;
-}
-
-void NumericKinematics::relax(const ToolPose& target, Vector& q) const {
-  Vector wish = Vector::Zero(q.size());
-  for (int i = 0; i < kRelaxations; ++i) {
-    for (Eigen::Index joint = 0; joint < q.size(); ++joint) {
-      const Part& part = chain_[static_cast<std::size_t>(joint)];
-      wish[joint] = part.has_middle ? kRelaxationShare * (part.middle - q[joint]) : 0;
+void NumericKinematics::approach(std::span<Approach* const> some) const {
+  if (solver_ == NumericSolver::scalar) {
+    for (Approach* search : some) {
+      search->reached = solve(*search);
     }
-    Vector next = q;
-    if (!solve(target, wish, kFollowIterations, kSearchStep, next)) {
-      return;
+    return;
+  }
+  const auto n = static_cast<Eigen::Index>(chain_.size());
+  postures::Block block;
+  for (; !some.empty(); some = some.subspan(std::min(some.size(), std::size_t{postures::kLanes}))) {
+    for (std::size_t lane = 0; lane < postures::kLanes; ++lane) {
+      // An unused lane has ordinary numbers, too: the processor may be slow with others.
+      const bool is_used = lane < some.size();
+      const Approach& search = *some[is_used ? lane : 0];
+      for (Eigen::Index i = 0; i < n; ++i) {
+        block.q[i][lane] = search.q[i];
+        block.wish[i][lane] = search.wish[i];
+      }
+      for (Eigen::Index row = 0; row < 3; ++row) {
+        block.position_m[row][lane] = search.target.position_m[row];
+      }
+      if (tool_.orientation != ToolOrientation::free) {
+        for (Eigen::Index row = 0; row < 3; ++row) {
+          for (Eigen::Index column = 0; column < 3; ++column) {
+            block.turn[row][column][lane] = search.target.turn(row, column);
+          }
+        }
+      }
+      block.iterations[lane] = is_used ? search.iterations : 0;
+      block.longest_step[lane] = search.longest_step;
     }
-    const double moved = (next - q).cwiseAbs().maxCoeff();
-    q = next;
-    if (moved < kRelaxed) {
-      return;
+    const unsigned reached = solve_lanes_(lane_chain_, block);
+    for (std::size_t lane = 0; lane < std::min(some.size(), std::size_t{postures::kLanes});
+         ++lane) {
+      for (Eigen::Index i = 0; i < n; ++i) {
+        some[lane]->q[i] = block.q[i][lane];
+      }
+      some[lane]->reached = (reached >> lane & 1) != 0;
     }
   }
+}
+
+NumericKinematics::Approach NumericKinematics::make_following() const {
+  Approach search;
+  search.q = Vector::Zero(static_cast<Eigen::Index>(chain_.size()));
+  search.wish = search.q;
+  search.iterations = kFollowIterations;
+  search.longest_step = kFollowStep;
+  return search;
+}
+
+bool NumericKinematics::follow(const ToolPose& target, std::span<const double> wish,
+                               std::span<double> q) const {
+  Approach search = make_following();
+  search.target = target;
+  search.q = to_vector(q);
+  search.wish = to_vector(wish);
+  Approach* const one = &search;
+  approach({&one, 1});
+  copy(search.q, q);
+  return search.reached;
+}
+
+NumericKinematics::Finding::Finding(const NumericKinematics& kinematics, const ToolPose& target)
+    : kinematics_(kinematics), random_("inverse kinematics/start", 0) {
+  search_.target = target;
+  begin_attempt();
+}
+
+void NumericKinematics::Finding::begin_attempt() {
+  search_.q = to_vector(attempts_ == 0 ? kinematics_.home_ : kinematics_.draw_posture(random_));
+  search_.wish = Vector::Zero(search_.q.size());
+  search_.iterations = kSearchIterations;
+  search_.longest_step = kSearchStep;
+}
+
+void NumericKinematics::Finding::begin_relaxation() {
+  search_.q = posture_;
+  for (Eigen::Index joint = 0; joint < posture_.size(); ++joint) {
+    const Part& part = kinematics_.chain_[static_cast<std::size_t>(joint)];
+    search_.wish[joint] = part.has_middle ? kRelaxationShare * (part.middle - posture_[joint]) : 0;
+  }
+  search_.iterations = kFollowIterations;
+}
+
+bool NumericKinematics::Finding::advance() {
+  if (!is_found_) {
+    if (!search_.reached) {
+      if (++attempts_ > kRestarts) {
+        return false;
+      }
+      begin_attempt();
+      return true;
+    }
+    is_found_ = true;
+    posture_ = search_.q;
+    begin_relaxation();
+    return true;
+  }
+  if (!search_.reached) {
+    return false;
+  }
+  const double moved = (search_.q - posture_).cwiseAbs().maxCoeff();
+  posture_ = search_.q;
+  if (++relaxations_ == kRelaxations || moved < kRelaxed) {
+    return false;
+  }
+  begin_relaxation();
+  return true;
 }
 
 bool NumericKinematics::find(const ToolPose& target, std::span<double> q) const {
-  RandomStream random("inverse kinematics/start", 0);
-  const Vector nothing = Vector::Zero(static_cast<Eigen::Index>(chain_.size()));
-  for (int attempt = 0; attempt <= kRestarts; ++attempt) {
-    Vector posture = to_vector(attempt == 0 ? home_ : draw_posture(random));
-    if (solve(target, nothing, kSearchIterations, kSearchStep, posture)) {
-      relax(target, posture);
-      copy(posture, q);
-      return true;
-    }
+  Finding finding(*this, target);
+  Approach* const one = &finding.search();
+  do {
+    approach({&one, 1});
+  } while (finding.advance());
+  if (finding.is_found()) {
+    copy(finding.posture(), q);
   }
-  return false;
+  return finding.is_found();
 }
 
 }  // namespace armwright

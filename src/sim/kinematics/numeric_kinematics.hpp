@@ -16,6 +16,10 @@
 //   pointing  L times the difference of the tool's axis from its target (m),
 //   pose      L times the rotation vector between the tool's orientation and its target (m).
 //
+// Two solvers iterate in this way. `lanes` solves eight postures at once in SIMD lanes
+// (posture_solver.hpp). `scalar` is that of version 1.0, one posture at a time; recorded
+// configurations of 1.0 keep it, because the last bits of the two differ.
+//
 // Joint positions q are in rad or m, one per joint. Positions of revolute joints are not wrapped,
 // so they are continuous along a path.
 #pragma once
@@ -26,16 +30,21 @@
 #include <string>
 #include <vector>
 
+#include "base/random.hpp"
+#include "sim/kinematics/posture_solver.hpp"
 #include "sim/kinematics/tool_task.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace armwright {
 
+enum class NumericSolver { lanes, scalar };
+const std::vector<std::string>& numeric_solver_names();  // in the order of the enum
+
 // The iterative inverse kinematics of one robot and one task. Its const functions may run in
 // several threads at once.
 class NumericKinematics {
  public:
-  static constexpr int kMostJoints = 16;
+  static constexpr int kMostJoints = postures::kMostJoints;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostJoints, 1>;
   using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMostJoints>;
 
@@ -44,7 +53,48 @@ class NumericKinematics {
   // joints stay in their ranges. Throws Error{bad_data} for more than kMostJoints joints,
   // Error{usage} for a home of another length.
   NumericKinematics(const RobotModel& robot, const ToolTask& tool, std::vector<double> home,
-                    bool within_limits);
+                    bool within_limits, NumericSolver solver = NumericSolver::lanes);
+
+  // One posture that is searched for: what approach() takes and gives.
+  struct Approach {
+    ToolPose target;
+    Vector q;     // where the search starts; afterwards the posture, invalid if it was not reached
+    Vector wish;  // w in the first iteration
+    int iterations = 0;
+    double longest_step = 0;  // rad or m
+    bool reached = false;
+  };
+  // Searches for every posture. Each result is the same bit for bit, whatever else is searched for.
+  // Fastest for multiples of postures::kLanes.
+  void approach(std::span<Approach* const> some) const;
+  // Makes the search of follow().
+  Approach make_following() const;
+
+  // The sequence of searches by which find() finds a posture. The caller executes them, so that
+  // several sequences can share the lanes.
+  class Finding {
+   public:
+    // Keeps a reference to the kinematics, which must live as long as this object.
+    Finding(const NumericKinematics& kinematics, const ToolPose& target);
+    // The next search to execute.
+    Approach& search() { return search_; }
+    // Takes the executed search. Returns whether another one must be executed.
+    bool advance();
+    bool is_found() const { return is_found_; }
+    const Vector& posture() const { return posture_; }  // if it is found
+
+   private:
+    void begin_attempt();
+    void begin_relaxation();
+
+    const NumericKinematics& kinematics_;
+    RandomStream random_;
+    Approach search_;
+    int attempts_ = 0;
+    int relaxations_ = 0;
+    bool is_found_ = false;
+    Vector posture_;
+  };
 
   // Moves q from a nearby posture to one at the target. Where the task leaves joints free, they
   // move by `wish`, one displacement per joint. Returns false if this fails; q is then invalid.
@@ -77,7 +127,7 @@ class NumericKinematics {
   std::size_t joint_count() const { return chain_.size(); }
   // Returns a random posture, one position per joint, drawn from the part of the joint's range
   // within +-pi rad or +-1 m.
-  std::vector<double> draw_posture(class RandomStream& random) const;
+  std::vector<double> draw_posture(RandomStream& random) const;
 
  private:
   struct Part {
@@ -97,9 +147,8 @@ class NumericKinematics {
   // Makes one step from q. Returns false if the step is not finite.
   bool improve(const Jacobian& jacobian, const Eigen::Matrix<double, 6, 1>& error,
                const Vector& wish, double longest_step, Vector& q) const;
-  bool solve(const ToolPose& target, const Vector& wish, int iterations, double longest_step,
-             Vector& q) const;
-  void relax(const ToolPose& target, Vector& q) const;
+  bool solve(Approach& search) const;
+  void make_lane_chain(const RobotModel& robot);
   // Returns J in comparable units: lengths in units of the arm's length, turns in rad.
   Eigen::MatrixXd calc_even_jacobian(std::span<const double> q) const;
   void find_rank();
@@ -110,6 +159,9 @@ class NumericKinematics {
   Eigen::Vector3d tip_place_;
   std::vector<double> home_;
   bool within_limits_;
+  NumericSolver solver_;
+  postures::Chain lane_chain_;
+  postures::Solve solve_lanes_;
   double length_m_ = 0;
   int rank_ = 0;
 };

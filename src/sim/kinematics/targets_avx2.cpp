@@ -1,6 +1,7 @@
 // The targets with AVX2, without FMA; src/CMakeLists.txt sets the compiler's options for this file.
 // It must not include headers whose functions other files use too, because the linker could merge
 // them.
+#include "sim/kinematics/posture_kernel.hpp"
 #include "sim/kinematics/target_kernel.hpp"
 
 #if defined(__x86_64__)
@@ -16,5 +17,13 @@ int solve_move_avx2(const ElbowUpArm& arm, const Move& move, int steps, double* 
 }
 
 }  // namespace armwright::targets
+
+namespace armwright::postures {
+
+unsigned solve_avx2(const Chain& chain, Block& block) {
+  return solve_lanes<lanes::Pack<double, 4, targets::Avx2Level>>(chain, block);
+}
+
+}  // namespace armwright::postures
 
 #endif

@@ -1,4 +1,5 @@
 // The targets one by one, for any machine, and the functions of targets.hpp for a single target.
+#include "sim/kinematics/posture_kernel.hpp"
 #include "sim/kinematics/target_kernel.hpp"
 
 namespace armwright::targets {
@@ -42,3 +43,11 @@ int solve_move_scalar(const ElbowUpArm& arm, const Move& move, int steps, double
 }
 
 }  // namespace armwright::targets
+
+namespace armwright::postures {
+
+unsigned solve_scalar(const Chain& chain, Block& block) {
+  return solve_lanes<targets::Number>(chain, block);
+}
+
+}  // namespace armwright::postures

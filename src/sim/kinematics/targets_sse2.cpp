@@ -1,4 +1,5 @@
 // The targets with SSE2, which every x86-64 CPU supports.
+#include "sim/kinematics/posture_kernel.hpp"
 #include "sim/kinematics/target_kernel.hpp"
 
 #if defined(__x86_64__)
@@ -14,5 +15,13 @@ int solve_move_sse2(const ElbowUpArm& arm, const Move& move, int steps, double* 
 }
 
 }  // namespace armwright::targets
+
+namespace armwright::postures {
+
+unsigned solve_sse2(const Chain& chain, Block& block) {
+  return solve_lanes<lanes::Pack<double, 2, targets::Sse2Level>>(chain, block);
+}
+
+}  // namespace armwright::postures
 
 #endif

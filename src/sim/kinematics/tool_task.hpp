@@ -17,12 +17,12 @@
 #include <string>
 #include <vector>
 
+#include "sim/kinematics/posture_solver.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace armwright {
 
-enum class ToolOrientation { free, pointing, pose };
-// Returns the names in the order of the enum.
+// Returns the names in the order of ToolOrientation.
 const std::vector<std::string>& tool_orientation_names();
 
 // How a task treats the tool's orientation.

@@ -77,13 +77,10 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
 
 std::vector<TargetTable> make_tables(const RobotModel& robot, const TrackingSetup& setup,
                                      const std::vector<TestCase>& cases) {
-  std::vector<TargetTable> tables;
-  for (const TestCase& its : cases) {
-    check_reading();
-    tables.push_back(setup.make_targets(its));
-    if (!tables.back().unreachable.empty()) {
-      refuse_proposal(robot,
-                      fmt::format("it cannot follow the path: {}", tables.back().unreachable));
+  std::vector<TargetTable> tables = setup.make_targets(cases);
+  for (const TargetTable& table : tables) {
+    if (!table.unreachable.empty()) {
+      refuse_proposal(robot, fmt::format("it cannot follow the path: {}", table.unreachable));
     }
   }
   return tables;

@@ -182,9 +182,8 @@ bool has_good_tables(const RobotModel& robot, TrackingTask task, const Workspace
   task.speed_m_per_s = task.distance_limit_m / kProposedMove_s;
   const TrackingSetup setup(robot, task);
   const auto kinematics = setup.get_kinematics();
-  for (const TestCase& its : make_proposal_cases(place.sphere)) {
+  for (const TargetTable& table : setup.make_targets(make_proposal_cases(place.sphere))) {
     check_reading();
-    const TargetTable table = setup.make_targets(its);
     if (!table.unreachable.empty()) {
       return false;
     }
@@ -233,7 +232,7 @@ WorkspaceProposal propose_workspace(const RobotModel& robot, const TrackingTask&
                                     WorkspaceSphere sphere) {
   const ReadStep step(fmt::format("proposing a workspace for robot '{}'", sanitize(robot.name)));
   const ToolTask& tool = task.tool;
-  const NumericKinematics kinematics(robot, tool, {}, true);
+  const NumericKinematics kinematics(robot, tool, {}, true, task.solver);
   kinematics.check_task(robot);
   const double length_m = calc_length_m(robot);
   sphere.normal = find_plane(kinematics, robot, tool, length_m);
@@ -246,7 +245,7 @@ WorkspaceProposal propose_workspace(const RobotModel& robot, const TrackingTask&
     sphere.centre_m = centre.position_m;
     const double most_m =
         std::min(kLargestRadius * length_m, (centre.position_m - first_m).norm() / kKeepOff);
-    const NumericKinematics from_home(robot, tool, home, true);
+    const NumericKinematics from_home(robot, tool, home, true, task.solver);
     for (double radius_m = most_m; radius_m >= least_m; radius_m *= kRadiusStep) {
       check_reading();
       set_radius(sphere, radius_m);

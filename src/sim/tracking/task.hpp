@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/controllers/law_types.hpp"
+#include "sim/kinematics/numeric_kinematics.hpp"
 #include "sim/kinematics/targets.hpp"
 #include "sim/kinematics/tool_task.hpp"
 
@@ -46,6 +47,7 @@ struct TrackingTask {
   bool ik_bug = false;
   double load_kg = 0;
   KinematicsChoice kinematics = KinematicsChoice::automatic;
+  NumericSolver solver = NumericSolver::lanes;
   LimitPolicy limits = LimitPolicy::ignore;
   ToolTask tool;
   // Joint positions (rad or m) from which numeric kinematics search. Empty: middles of the ranges.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/read_limit.hpp"
 #include "sim/dynamics/chain_model.hpp"
@@ -109,7 +110,7 @@ std::shared_ptr<const NumericKinematics> TrackingSetup::get_kinematics() const {
     tool.axis = robot_.tip_pose.linear().transpose() * robot_.tip_pose.translation().normalized();
   }
   return std::make_shared<NumericKinematics>(robot_, tool, task_.home,
-                                             task_.limits != LimitPolicy::ignore);
+                                             task_.limits != LimitPolicy::ignore, task_.solver);
 }
 
 targets::SignalCurve TrackingSetup::make_signal(double distance_m) const {
@@ -147,16 +148,18 @@ ToolPose TrackingSetup::make_pose(const TestCase& test_case, std::size_t point) 
 }
 
 ToolPose TrackingSetup::calc_target_pose(const TestCase& test_case, const TargetTable& table,
-                                         std::size_t segment, int step) const {
+                                         std::size_t segment, const targets::Move& move,
+                                         int step) const {
   const Segment& its = table.segments[segment];
   ToolPose pose = make_pose(test_case, segment + 1);
-  pose.position_m = calc_target_position(its, step);
+  if (!its.is_sample) {
+    targets::calc_position(move, step, pose.position_m.data());
+  }
   const double time_s = (step + 1) * task_.control_period_s;
   if (!its.is_sample && !test_case.turns.empty() && time_s < its.duration_s) {
     // The tool turns in proportion to the distance covered (Shoemake 1985, Animating rotation with
     // quaternion curves, SIGGRAPH 19).
-    const double distance_m = (its.to_m - its.from_m).norm();
-    const double share = targets::calc_distance(make_signal(distance_m), time_s) / distance_m;
+    const double share = targets::calc_distance(move.curve, time_s) / move.curve.distance_m;
     pose.turn =
         test_case.turns[segment].slerp(share, test_case.turns[segment + 1]).toRotationMatrix();
   }
@@ -226,81 +229,178 @@ void TrackingSetup::solve_closed_form(const TestCase& test_case, TargetTable& ta
   }
 }
 
-void TrackingSetup::solve_numerically(const TestCase& test_case, TargetTable& table) const {
-  const std::size_t n = table.joints;
-  std::vector<double> q(n);
-  const auto describe = [&](const ToolPose& pose, const std::vector<double>& ended) {
-    return describe_unreachable(*numeric_, robot_, task_.tool, pose, ended);
-  };
-  const ToolPose start = make_pose(test_case, 0);
-  if (!numeric_->find(start, q)) {
-    table.unreachable = "start: " + describe(start, q);
-    return;
-  }
-  table.start_positions = q;
-  table.joint_positions.resize(static_cast<std::size_t>(table.steps) * n);
-  std::vector<double> before = q;  // a step earlier
-  std::vector<double> wish(n);
-  const double centring = std::min(1.0, kCentringRate_hz * task_.control_period_s);
-  for (std::size_t k = 0; k < table.segments.size(); ++k) {
-    const Segment& segment = table.segments[k];
-    const int distinct = count_distinct_steps(segment);
-    for (int step = 0; step < segment.steps; ++step) {
-      double* const row =
-          table.joint_positions.data() + static_cast<std::size_t>(segment.first_step + step) * n;
-      if (step < distinct) {
-        // The search starts where the joints would be at their present speed, so it needs only one
-        // or two iterations. Motion that the task leaves free goes towards the middle of the
-        // ranges.
-        if (step % kStepsBetweenLooks == 0) {
-          check_reading();
-        }
-        for (std::size_t i = 0; i < n; ++i) {
-          const double carried = q[i] - before[i];
-          const double drawn =
-              numeric_->has_middle(i) ? centring * (numeric_->get_middle(i) - q[i]) : 0;
-          before[i] = q[i];
-          q[i] += carried;
-          wish[i] = drawn - carried;
-        }
-        const ToolPose pose = calc_target_pose(test_case, table, k, step);
-        const std::vector<double> from = before;
-        if (!numeric_->follow(pose, wish, q)) {
-          table.unreachable =
-              fmt::format("on the way to point {}: {}", k + 1, describe(pose, from));
-          table.joint_positions.resize(
-              static_cast<std::size_t>(row - table.joint_positions.data()));
-          return;
-        }
-      } else {
-        before = q;
-      }
-      std::copy(q.begin(), q.end(), row);
+// Joint positions are sequential in time: each search starts from the one before. So several cases
+// share the lanes, not several steps of one case.
+class TrackingSetup::NumericPath {
+  using Vector = NumericKinematics::Vector;
+
+ public:
+  NumericPath(const TrackingSetup& setup, const TestCase& test_case, TargetTable& table)
+      : setup_(setup),
+        kinematics_(*setup.numeric_),
+        test_case_(test_case),
+        table_(table),
+        finding_(kinematics_, setup.make_pose(test_case, 0)),
+        following_(kinematics_.make_following()),
+        centring_(std::min(1.0, kCentringRate_hz * setup.task_.control_period_s)) {}
+
+  // The next search to execute.
+  NumericKinematics::Approach* search() { return is_following_ ? &following_ : &finding_.search(); }
+
+  // Takes the executed search. Returns whether another one must be executed.
+  bool advance() {
+    if (!is_following_) {
+      return finding_.advance() || begin_following();
     }
+    if (!following_.reached) {
+      table_.unreachable =
+          fmt::format("on the way to point {}: {}", segment_ + 1, describe(following_, before_));
+      table_.joint_positions.resize(static_cast<std::size_t>(count_steps()) * table_.joints);
+      return false;
+    }
+    write_row();
+    ++step_;
+    return begin_step();
+  }
+
+ private:
+  bool begin_following() {
+    if (!finding_.is_found()) {
+      table_.unreachable =
+          "start: " + describe(finding_.search(), Vector::Zero(following_.q.size()));
+      return false;
+    }
+    is_following_ = true;
+    following_.q = finding_.posture();
+    before_ = following_.q;
+    table_.start_positions.assign(before_.begin(), before_.end());
+    table_.joint_positions.resize(static_cast<std::size_t>(table_.steps) * table_.joints);
+    begin_segment();
+    return begin_step();
+  }
+
+  void begin_segment() {
+    if (segment_ < table_.segments.size()) {
+      const Segment& its = table_.segments[segment_];
+      distinct_ = setup_.count_distinct_steps(its);
+      if (!its.is_sample) {
+        move_ = setup_.make_move(its);
+      }
+    }
+  }
+
+  // Prepares the search of the next step whose target moves. Returns false at the end of the case.
+  bool begin_step() {
+    while (segment_ < table_.segments.size() && step_ >= distinct_) {
+      for (; step_ < table_.segments[segment_].steps; ++step_) {  // the target rests
+        before_ = following_.q;
+        write_row();
+      }
+      ++segment_;
+      step_ = 0;
+      begin_segment();
+    }
+    if (segment_ == table_.segments.size()) {
+      return false;
+    }
+    // The search starts where the joints would be at their present speed, so it needs only one or
+    // two iterations. Motion that the task leaves free goes towards the middle of the ranges.
+    for (Eigen::Index i = 0; i < before_.size(); ++i) {
+      const auto joint = static_cast<std::size_t>(i);
+      double& position = following_.q[i];
+      const double carried = position - before_[i];
+      const double drawn = kinematics_.has_middle(joint)
+                               ? centring_ * (kinematics_.get_middle(joint) - position)
+                               : 0;
+      before_[i] = position;
+      position += carried;
+      following_.wish[i] = drawn - carried;
+    }
+    following_.target = setup_.calc_target_pose(test_case_, table_, segment_, move_, step_);
+    return true;
+  }
+
+  int count_steps() const { return table_.segments[segment_].first_step + step_; }
+  void write_row() {
+    std::copy_n(
+        following_.q.data(), table_.joints,
+        table_.joint_positions.data() + static_cast<std::size_t>(count_steps()) * table_.joints);
+  }
+  std::string describe(const NumericKinematics::Approach& search, const Vector& from) const {
+    return describe_unreachable(kinematics_, setup_.robot_, setup_.task_.tool, search.target,
+                                std::span(from.data(), static_cast<std::size_t>(from.size())));
+  }
+
+  const TrackingSetup& setup_;
+  const NumericKinematics& kinematics_;
+  const TestCase& test_case_;
+  TargetTable& table_;
+  NumericKinematics::Finding finding_;
+  NumericKinematics::Approach following_;
+  const double centring_;
+  bool is_following_ = false;
+  Vector before_;  // a step earlier
+  std::size_t segment_ = 0;
+  int step_ = 0;        // of the segment
+  int distinct_ = 0;    // its steps with targets of their own
+  targets::Move move_;  // of the segment
+};
+
+void TrackingSetup::solve_numerically(std::span<const TestCase> test_cases,
+                                      std::span<TargetTable> tables) const {
+  // A case that ends leaves its lane to the next one.
+  std::vector<std::unique_ptr<NumericPath>> paths;
+  std::vector<NumericKinematics::Approach*> searches;
+  std::size_t begun = 0;
+  for (int looks = 0;; ++looks) {
+    for (; begun < test_cases.size() && paths.size() < postures::kLanes; ++begun) {
+      paths.push_back(std::make_unique<NumericPath>(*this, test_cases[begun], tables[begun]));
+    }
+    if (paths.empty()) {
+      return;
+    }
+    if (looks % kStepsBetweenLooks == 0) {
+      check_reading();
+    }
+    searches.clear();
+    for (const auto& path : paths) {
+      searches.push_back(path->search());
+    }
+    numeric_->approach(searches);
+    std::erase_if(paths, [](const auto& path) { return !path->advance(); });
   }
 }
 
-TargetTable TrackingSetup::make_targets(const TestCase& test_case) const {
-  TargetTable table;
-  table.joints = robot_.joint_count();
-  make_timeline(test_case, table);
-  if (closed_form_) {
-    solve_closed_form(test_case, table);
-  } else {
-    solve_numerically(test_case, table);
-  }
-  if (!table.unreachable.empty()) {
-    return table;
-  }
-  if (task_.limits == LimitPolicy::enforce) {
-    const std::vector<PathFault> faults = find_path_faults(*this, table);
-    if (!faults.empty()) {
-      table.unreachable = describe(faults.front(), robot_);
-      return table;
+std::vector<TargetTable> TrackingSetup::make_targets(std::span<const TestCase> test_cases) const {
+  std::vector<TargetTable> tables(test_cases.size());
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    tables[i].joints = robot_.joint_count();
+    make_timeline(test_cases[i], tables[i]);
+    if (closed_form_) {
+      solve_closed_form(test_cases[i], tables[i]);
     }
   }
-  fill_feed_forward(table);
-  return table;
+  if (!closed_form_) {
+    solve_numerically(test_cases, tables);
+  }
+  for (TargetTable& table : tables) {
+    if (!table.unreachable.empty()) {
+      continue;
+    }
+    if (task_.limits == LimitPolicy::enforce) {
+      const std::vector<PathFault> faults = find_path_faults(*this, table);
+      if (!faults.empty()) {
+        table.unreachable = armwright::describe(faults.front(), robot_);
+        continue;
+      }
+    }
+    fill_feed_forward(table);
+  }
+  return tables;
+}
+
+TargetTable TrackingSetup::make_targets(const TestCase& test_case) const {
+  return std::move(make_targets(std::span(&test_case, 1)).front());
 }
 
 }  // namespace armwright

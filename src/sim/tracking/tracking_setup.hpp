@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "sim/kinematics/kinematics.hpp"
@@ -32,6 +33,9 @@ class TrackingSetup {
   // Returns the targets of a case. A case that cannot be simulated gives a table whose
   // `unreachable` says why. Throws Error{usage} if a move's reference signal cannot be made.
   TargetTable make_targets(const TestCase& test_case) const;
+  // Returns the targets of several cases, with the same bits. Numeric kinematics are several times
+  // as fast for postures::kLanes cases as for one.
+  std::vector<TargetTable> make_targets(std::span<const TestCase> test_cases) const;
   // Returns the target's position (m) at the end of a step, for error series and trajectories.
   Eigen::Vector3d calc_target_position(const Segment& segment, int step_in_segment) const;
   // Returns numeric kinematics of the robot, also if the task uses the closed form.
@@ -39,17 +43,20 @@ class TrackingSetup {
   bool has_closed_form() const { return closed_form_.has_value(); }
 
  private:
+  class NumericPath;  // the targets of one case, step by step
+
   targets::SignalCurve make_signal(double distance_m) const;
   targets::Move make_move(const Segment& segment) const;
   void make_timeline(const TestCase& test_case, TargetTable& table) const;
   void solve_closed_form(const TestCase& test_case, TargetTable& table) const;
-  void solve_numerically(const TestCase& test_case, TargetTable& table) const;
+  void solve_numerically(std::span<const TestCase> test_cases, std::span<TargetTable> tables) const;
   // Computes the table's feed-forward efforts from its joint positions (feed_forward.cpp).
   void fill_feed_forward(TargetTable& table) const;
   ToolPose make_pose(const TestCase& test_case, std::size_t point) const;
-  // Returns the position as calc_target_position() does, and the orientation.
+  // Returns the target at the end of a step. `move` is make_move() of the segment, unless that is a
+  // sample.
   ToolPose calc_target_pose(const TestCase& test_case, const TargetTable& table,
-                            std::size_t segment, int step) const;
+                            std::size_t segment, const targets::Move& move, int step) const;
   // Returns how many of a segment's steps have targets of their own: the steps before the target
   // has arrived, and the first step at whose end it has.
   int count_distinct_steps(const Segment& segment) const;

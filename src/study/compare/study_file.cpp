@@ -22,6 +22,7 @@
 #include "study/compare/study_methods.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/compare/study_reader.hpp"
+#include "study/run/run_folder.hpp"
 
 namespace armwright {
 namespace {
@@ -124,20 +125,24 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
 }
 
 // Loads the problem as it was when the plan was made: on another SIMD level, because "auto" may
-// choose another one on this machine, or as the plain form of a function, which was the only form
-// before version 2.0. Returns false if neither gives the recorded configuration.
+// choose another one on this machine, or as the plain form of a function or with the scalar solver of
+// the inverse kinematics, the only ones before version 2.0. Returns false if none of these gives the
+// recorded configuration.
 bool load_as_recorded(const NamedProblem& named, StudyProblem& problem) {
-  std::vector<std::string> variants;
+  std::vector<std::vector<std::string>> variants;
   if (problem.loaded.function) {
-    variants = {"function.instance=0"};
+    variants = {{kPlainForm}};
   } else if (problem.loaded.tracking()) {
+    variants = {{kScalarSolver}};
     for (const std::string& level : supported_simd_names()) {
-      variants.push_back("physics.simd=" + level);
+      const std::string simd = "physics.simd=" + level;
+      variants.push_back({simd});
+      variants.push_back({simd, kScalarSolver});
     }
   }
-  for (const std::string& variant : variants) {
+  for (const std::vector<std::string>& variant : variants) {
     std::vector<std::string> settings = problem.settings;
-    settings.push_back(variant);
+    settings.insert(settings.end(), variant.begin(), variant.end());
     try {
       LoadedProblem loaded = load_problem(named.name, settings);
       if (calc_configuration_hash(loaded) == named.configuration_sha256) {
@@ -389,12 +394,14 @@ void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan) {
   }
 }
 
-void keep_plain_functions(const std::filesystem::path& recorded, StudyPlan& plan) {
+void keep_old_problems(const std::filesystem::path& recorded, StudyPlan& plan) {
   StudyPlan ignored;
   const RawPlan raw = read_study_file(recorded, ignored);
   for (StudyProblem& problem : plan.problems) {
     const auto found = std::ranges::find(raw.problems, problem.label, &NamedProblem::label);
-    if (found != raw.problems.end() && problem.loaded.function &&
+    const TrackingProblem* const arm = problem.loaded.tracking();
+    const bool is_numeric = arm != nullptr && !arm->setup().has_closed_form();
+    if (found != raw.problems.end() && (problem.loaded.function || is_numeric) &&
         found->configuration_sha256 != calc_configuration_hash(problem.loaded)) {
       NamedProblem named = *found;
       named.name = problem.name;

@@ -257,7 +257,7 @@ void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan) {
     keep_baselines(folder / kPlanFile, plan);
   }
   keep_selection(folder / kPlanFile, plan);
-  keep_plain_functions(folder / kPlanFile, plan);
+  keep_old_problems(folder / kPlanFile, plan);
   adopt_streams(folder / kPlanFile, plan);
   adopt_descriptions(folder / kPlanFile, plan);
 }

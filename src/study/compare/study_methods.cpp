@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "study/run/run_folder.hpp"
 
 namespace armwright {
 namespace {
@@ -79,7 +80,11 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
     settings.push_back("physics.simd=" + resolved["physics"]["simd"].get<std::string>());
   }
   if (problem.loaded.function && problem.loaded.function->instance == 0) {
-    settings.push_back("function.instance=0");  // the plan may have been recorded before 2.0
+    settings.emplace_back(kPlainForm);  // the plan may have been recorded before 2.0
+  }
+  if (problem.loaded.tracking() != nullptr &&
+      problem.loaded.tracking()->setup().task().solver == NumericSolver::scalar) {
+    settings.emplace_back(kScalarSolver);  // likewise
   }
   LoadedProblem loaded = load_for_method(problem, optimizer, settings, programs);
   if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {

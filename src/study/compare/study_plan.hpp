@@ -172,9 +172,10 @@ void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan);
 // Error{usage} or Error{io} if the file cannot be read.
 void keep_selection(const std::filesystem::path& recorded, StudyPlan& plan);
 
-// Gives functions of `plan` the plain form where the recorded plan has it and `plan` has an instance:
-// version 1.0 had no other form. Throws as keep_baselines().
-void keep_plain_functions(const std::filesystem::path& recorded, StudyPlan& plan);
+// Gives functions of `plan` the plain form, and arms the scalar solver of the numeric inverse
+// kinematics, where the recorded plan has them: version 1.0 had no others. Throws as
+// keep_baselines().
+void keep_old_problems(const std::filesystem::path& recorded, StudyPlan& plan);
 
 // Content of a study's file that needs no loading of problems and optimizers.
 struct StudyOutline {

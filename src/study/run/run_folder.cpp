@@ -284,20 +284,31 @@ bool has_first_selection(const std::filesystem::path& folder) {
   return manifest.contains(selection) && !manifest[selection].contains("most");
 }
 
-bool needs_plain_form(const std::filesystem::path& folder, const LoadedProblem& problem,
-                      std::span<const std::string> settings) {
-  const auto names_instance = [](const std::string& setting) {
+std::string find_old_setting(const std::filesystem::path& folder, const LoadedProblem& problem,
+                             std::span<const std::string> settings) {
+  const bool has_instance = problem.function && problem.function->instance != 0;
+  const bool has_lanes = problem.tracking() != nullptr &&
+                         !problem.tracking()->setup().has_closed_form() &&
+                         problem.tracking()->setup().task().solver == NumericSolver::lanes;
+  if ((!has_instance && !has_lanes) || !has_first_selection(folder)) {
+    return "";
+  }
+  const std::string old = has_instance ? kPlainForm : kScalarSolver;
+  const std::string key = old.substr(0, old.find('='));
+  const auto names_key = [&](const std::string& setting) {
     const std::size_t begin = setting.find_first_not_of(' ');
     const std::size_t end = setting.find_first_of(" =", begin);
-    return begin != std::string::npos && setting.substr(begin, end - begin) == "function.instance";
+    return begin != std::string::npos && setting.substr(begin, end - begin) == key;
   };
-  if (std::ranges::any_of(settings, names_instance) || !problem.function ||
-      problem.function->instance == 0 || !has_first_selection(folder)) {
-    return false;
+  if (std::ranges::any_of(settings, names_key)) {
+    return "";
   }
   const json recorded = find(read_manifest(folder / "manifest.json"), "/configuration/problem");
-  return find(recorded, "/function/name") == problem.function->name &&
-         find(recorded, "/function/instance").is_null();
+  const bool is_old = has_instance ? find(recorded, "/function/name") == problem.function->name &&
+                                         find(recorded, "/function/instance").is_null()
+                                   : find(recorded, "/robot").is_object() &&
+                                         find(recorded, "/task/solver").is_null();
+  return is_old ? old : "";
 }
 
 namespace {

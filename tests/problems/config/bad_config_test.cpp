@@ -15,7 +15,8 @@ constexpr const char* kTopKeys =
     "workspace, path, objective, training, variables, motors, perturbation, requirement, sweep";
 constexpr const char* kTaskKeys =
     "signal, speed_m_per_s, distance_limit_m, trapezoid_acceleration_m_per_s2, rest_s, "
-    "count_first_point, ik_bug, load_kg, kinematics, limits, orientation, tool_rpy_rad, tool_axis, "
+    "count_first_point, ik_bug, load_kg, kinematics, solver, limits, orientation, tool_rpy_rad, "
+    "tool_axis, "
     "orientation_arm_m, home";
 
 struct Mistake {

@@ -120,5 +120,50 @@ TEST(Instances, MistakesAreNamed) {
             "lower function.instance than 200000");
 }
 
+// Which solver of the numeric inverse kinematics a recorded problem has.
+
+LoadedProblem load_arm(std::vector<std::string> overrides = {}) {
+  overrides.emplace_back("robot.urdf=irb4600_six");
+  return load_problem("robot", overrides);
+}
+
+NumericSolver get_solver(const LoadedProblem& problem) {
+  return problem.tracking()->setup().task().solver;
+}
+
+TEST(RecordedSolver, OfANewRunIsRecordedAndReadAgain) {
+  const LoadedProblem problem = load_arm();
+  EXPECT_EQ(get_solver(problem), NumericSolver::lanes);
+  EXPECT_EQ(json::parse(problem.resolved_json)["task"]["solver"], "lanes");
+  const LoadedProblem again = load_recorded_problem(problem.resolved_json, "robot", "/nowhere");
+  EXPECT_EQ(get_solver(again), NumericSolver::lanes);
+  EXPECT_EQ(again.resolved_json, problem.resolved_json);
+}
+
+// So recorded version 1.0, which had only this solver.
+TEST(RecordedSolver, IsTheScalarOneWhereTheRecordHasNone) {
+  const LoadedProblem problem = load_arm({"task.solver=scalar"});
+  EXPECT_EQ(get_solver(problem), NumericSolver::scalar);
+  EXPECT_FALSE(json::parse(problem.resolved_json)["task"].contains("solver"));
+  const LoadedProblem again = load_recorded_problem(problem.resolved_json, "robot", "/nowhere");
+  EXPECT_EQ(get_solver(again), NumericSolver::scalar);
+  EXPECT_EQ(again.resolved_json, problem.resolved_json);
+  const auto calc_targets = [](const LoadedProblem& its) {
+    return its.tracking()->setup().make_targets(its.tracking()->get_set("test/1").make_case(3));
+  };
+  EXPECT_EQ(calc_targets(again).joint_positions, calc_targets(problem).joint_positions);
+}
+
+TEST(RecordedSolver, IsLeftOutWhereTheArmHasAClosedForm) {
+  const LoadedProblem problem = load_problem("q1-complex");
+  EXPECT_FALSE(json::parse(problem.resolved_json)["task"].contains("solver"));
+}
+
+TEST(RecordedSolver, OfAnotherNameIsRefused) {
+  const ProblemFolder folder;
+  EXPECT_THAT(folder.refusal_of_base_with("[task]\nsolver = \"eigen\"\n"),
+              HasSubstr("p.toml:3: unknown task.solver 'eigen'. Valid: lanes, scalar"));
+}
+
 }  // namespace
 }  // namespace armwright

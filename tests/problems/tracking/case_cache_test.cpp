@@ -68,6 +68,40 @@ TEST_F(CaseCacheTest, OldestTablesAreDroppedAtTheLimit) {
   EXPECT_EQ(cache.computed(), 6U);
 }
 
+TEST_F(CaseCacheTest, FillMakesAtOnceWhatIsLackingAndNothingElse) {
+  CaseCache<TargetTable> cache(10 * table_bytes_);
+  get(cache, set_, 5);
+  std::vector<std::uint64_t> asked;
+  const std::vector<std::uint64_t> numbers = {4, 5, 6, 4};
+  cache.fill(set_.name(), numbers, [&](std::span<const std::uint64_t> lacking) {
+    asked.assign(lacking.begin(), lacking.end());
+    std::vector<TestCase> cases;
+    for (const std::uint64_t number : lacking) {
+      cases.push_back(set_.make_case(number));
+    }
+    return setup_.make_targets(cases);
+  });
+  EXPECT_THAT(asked, testing::ElementsAre(4, 6));
+  EXPECT_EQ(cache.computed(), 3U);
+  for (const std::uint64_t number : {4, 5, 6}) {
+    EXPECT_EQ(get(cache, set_, number)->joint_positions,
+              setup_.make_targets(set_.make_case(number)).joint_positions);
+  }
+  EXPECT_EQ(cache.computed(), 3U);
+}
+
+TEST_F(CaseCacheTest, FillThatThrowsLeavesTheCacheUsable) {
+  CaseCache<TargetTable> cache(10 * table_bytes_);
+  const std::vector<std::uint64_t> numbers = {1, 2};
+  EXPECT_THROW(cache.fill(set_.name(), numbers,
+                          [](std::span<const std::uint64_t>) -> std::vector<TargetTable> {
+                            throw Error(ErrorKind::usage, "no");
+                          }),
+               Error);
+  EXPECT_EQ(get(cache, set_, 2)->steps, 2856);
+  EXPECT_EQ(cache.computed(), 1U);
+}
+
 TEST_F(CaseCacheTest, LimitBelowOneTableKeepsTheLastOne) {
   CaseCache<TargetTable> cache(1);
   EXPECT_EQ(get(cache, set_, 0)->steps, 2856);  // thesis: 25 moves at 1.5 m/s
