@@ -6,8 +6,10 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
+#include "problems/config/plant_file.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "sim/robot/mesh_file.hpp"
 
@@ -33,6 +35,14 @@ const Setting<double> kRobotMassScale{"mass_scale",
                                       {.lower = 0.01, .upper = 100},
                                       TrackingConfig{}.mass_scale,
                                       "factor on every mass and inertia of the robot"};
+const Setting<bool> kRobotDynamics{
+    "dynamics", RobotOptions{}.dynamics,
+    "whether joints have the friction of <dynamics> in the URDF (the problem robot, which --robot "
+    "uses, has true)"};
+const Setting<std::string> kRobotPlant{
+    "plant", "",
+    "file with rotor inertia, friction, elasticity and counterbalances of the joints; auto: "
+    "FILE.plant.toml beside the robot FILE.urdf, if it exists (the problem robot has auto)"};
 const Setting<bool> kRobotPropose{
     "propose", false,
     "whether values that the file leaves out of workspace, pace and controllers are proposed from "
@@ -79,6 +89,19 @@ void read_path_and_proposal(const ConfigTable& table, TrackingConfig& config,
   }
 }
 
+// Returns the plant's file, and settles its name. Empty: there is none.
+std::filesystem::path find_plant(const ConfigTable& table, const std::filesystem::path& urdf) {
+  const std::string named = table.get(kRobotPlant);
+  if (named != kPlantBeside) {
+    return named.empty() ? "" : resolve_named(table, kRobotPlant, "robots");
+  }
+  const std::filesystem::path beside = name_plant_file(urdf);
+  const bool exists = path_exists(beside);
+  // A record is read where the URDF is found, so the name is that of the URDF.
+  table.settle(kRobotPlant, exists ? name_plant_file(table.get(kRobotUrdf)).string() : "");
+  return exists ? beside : "";
+}
+
 // Returns the robot that [robot] describes, with the masses of its file.
 RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urdf,
                       LoadedProblem& loaded) {
@@ -86,11 +109,17 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
   options.base = table.get(kRobotBase);
   options.tip = table.get(kRobotTip);
   options.density_kg_per_m3 = table.get(kRobotDensity);
+  options.dynamics = table.get(kRobotDynamics);
+  const std::filesystem::path plant = find_plant(table, urdf);
   try {
     RobotModel robot = load_urdf(urdf, options);
     add_input(loaded, urdf);
     for (const auto& [name, path] : robot.mass_files) {
       loaded.input_hashes[name] = calc_sha256_hex(read_file(path, kMeshFileLimit_bytes));
+    }
+    if (!plant.empty()) {
+      load_plant(plant, robot);
+      add_input(loaded, plant);
     }
     return robot;
   } catch (const RobotOptionError& error) {
@@ -100,9 +129,10 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
 
 }  // namespace
 
-const SettingTable kRobotSettings{.key = "robot",
-                                  .settings = {&kRobotUrdf, &kRobotBase, &kRobotTip, &kRobotDensity,
-                                               &kRobotMassScale, &kRobotPropose}};
+const SettingTable kRobotSettings{
+    .key = "robot",
+    .settings = {&kRobotUrdf, &kRobotBase, &kRobotTip, &kRobotDensity, &kRobotMassScale,
+                 &kRobotDynamics, &kRobotPlant, &kRobotPropose}};
 const SettingTable kTrainingSettings{.key = "training", .settings = {&kTrainingCutoff}};
 const SettingTable kMotorSettings{.key = "motors", .settings = {&kMotorsTorquePerMass}};
 

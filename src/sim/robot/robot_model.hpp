@@ -82,6 +82,8 @@ struct RobotModel {
   // frame. At most four (make_tool_points() of sim/kinematics/tool_task.hpp). Empty: the tool
   // centre point is measured.
   std::vector<Eigen::Vector3d> tool_points_m;
+  // The names of the joints that could move and are held, because they are not on the chain.
+  std::vector<std::string> held_joints;
   // Notes for the user, one line each, safe to print on a terminal. They name the parts of the file
   // that simulations ignore and the assumptions that the reader made.
   std::vector<std::string> notes;
@@ -98,6 +100,9 @@ struct RobotOptions {
   std::string base = {};         // the chain's first link; empty: the root
   std::string tip = {};          // the chain's last link; empty: the only leaf below the base
   double density_kg_per_m3 = 0;  // density of moving links without <inertial>; 0: no mass
+  // Whether the chain's joints have the viscous and Coulomb friction of their <dynamics>. If not,
+  // they have none, as in version 1.0, and a note says so.
+  bool dynamics = false;
 };
 
 // An Error{usage}: a member of RobotOptions does not fit the file. The message begins with the
@@ -127,8 +132,8 @@ class RobotOptionError final : public Error {
 // `base` become part of the fixed base. The world's frame is the root link's frame. The tip's frame
 // is the tool centre point.
 //
-// The reader uses the inertial and visual elements and the joints' origins, axes and limits. An
-// effort or velocity limit of 0 is a placeholder and means no limit. If `options.density_kg_per_m3`
+// The reader uses the inertial and visual elements and the joints' origins, axes and limits, and
+// with `options.dynamics` their friction (joint_plant.hpp: damping is d, friction is c). An effort or velocity limit of 0 is a placeholder and means no limit. If `options.density_kg_per_m3`
 // is positive, each moving link without <inertial> gets the mass properties of its visual shapes
 // (shape_mass.hpp). RobotModel::notes names these assumptions and all parts that are ignored
 // (docs/robots.md).

@@ -289,7 +289,7 @@ TEST(BadConfig, EveryUnknownKeyIsNamedAtOnce) {
                 "here: " +
                 kTaskKeys +
                 "\np.toml:7: unknown key robot.url. Valid here: urdf, mass_scale, base, "
-                "tip, density_kg_per_m3, propose");
+                "tip, density_kg_per_m3, dynamics, plant, propose");
 }
 
 TEST(BadConfig, WhatIsMissingIsNamed) {
