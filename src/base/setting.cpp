@@ -159,6 +159,7 @@ std::string find_key_unit(std::string_view key) {
       {"_n", "N"},
       {"_s", "s"},
       {"_j", "J"},
+      {"_hz", "Hz"},
   };
   for (const auto& [ending, unit] : kUnits) {
     if (key.ends_with(ending)) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "base/error.hpp"
@@ -43,6 +44,28 @@ const Setting<std::string> kRobotPlant{
     "plant", "",
     "file with rotor inertia, friction, elasticity and counterbalances of the joints; auto: "
     "FILE.plant.toml beside the robot FILE.urdf, if it exists (the problem robot has auto)"};
+constexpr Range kPlantFactor{.lower = 0.01, .upper = 100};
+const Setting<double> kRobotFrictionScale{"friction_scale",
+                                          {.lower = 0, .upper = 100},
+                                          PlantScales{}.friction,
+                                          "factor on all friction of the robot's joints"};
+const Setting<double> kRobotArmatureScale{"armature_scale", kPlantFactor, PlantScales{}.armature,
+                                          "factor on the armatures of the robot's joints"};
+const Setting<double> kRobotStiffnessScale{
+    "stiffness_scale", kPlantFactor, PlantScales{}.stiffness,
+    "factor on the stiffness and damping of the robot's elastic joints"};
+const Setting<double> kRobotArmatureShare{
+    "armature_share",
+    {.lower = 0, .upper = 10},
+    PlantScales{}.armature_share,
+    "joints without armature get this share of the inertia that they move in the middle of the "
+    "ranges"};
+const Setting<double> kRobotElastic{
+    "elastic_hz",
+    {.lower = 0, .upper = 1000},
+    PlantScales{}.elastic_hz,
+    "rigid joints become elastic: on a held link, their motors swing at this frequency; needs "
+    "armatures; 0: they stay rigid"};
 const Setting<bool> kRobotPropose{
     "propose", false,
     "whether values that the file leaves out of workspace, pace and controllers are proposed from "
@@ -59,6 +82,26 @@ const Setting<double> kMotorsTorquePerMass{
     {.lower = 0, .upper = 1e9},
     TrackingConfig{}.torque_per_mass_n_m_per_kg,
     "every joint carries a motor with the mass effort limit / this; 0: motors have no mass"};
+
+// Reads the changes of the plants and applies them to the robot.
+void scale_plants_of(const ConfigTable& table, TrackingConfig& config) {
+  config.plant_scales = {.friction = table.get(kRobotFrictionScale),
+                         .armature = table.get(kRobotArmatureScale),
+                         .stiffness = table.get(kRobotStiffnessScale),
+                         .armature_share = table.get(kRobotArmatureShare),
+                         .elastic_hz = table.get(kRobotElastic)};
+  if (config.plant_scales == PlantScales{}) {
+    return;
+  }
+  config.robot = scale_plants(std::move(config.robot), config.plant_scales);
+  if (config.plant_scales.elastic_hz > 0 &&
+      std::ranges::none_of(config.robot.joints,
+                           [](const Joint& joint) { return joint.plant.is_elastic(); })) {
+    table.refuse(kRobotElastic,
+                 "none of the robot's joints has an armature, which an elastic joint needs; give "
+                 "robot.armature_share, or armatures in the file of robot.plant");
+  }
+}
 
 std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
                                                      const ConfigTable& variables,
@@ -132,7 +175,8 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
 const SettingTable kRobotSettings{
     .key = "robot",
     .settings = {&kRobotUrdf, &kRobotBase, &kRobotTip, &kRobotDensity, &kRobotMassScale,
-                 &kRobotDynamics, &kRobotPlant, &kRobotPropose}};
+                 &kRobotDynamics, &kRobotPlant, &kRobotFrictionScale, &kRobotArmatureScale,
+                 &kRobotStiffnessScale, &kRobotArmatureShare, &kRobotElastic, &kRobotPropose}};
 const SettingTable kTrainingSettings{.key = "training", .settings = {&kTrainingCutoff}};
 const SettingTable kMotorSettings{.key = "motors", .settings = {&kMotorsTorquePerMass}};
 
@@ -156,6 +200,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   const auto urdf = resolve_named(robot, kRobotUrdf, "robots");
   config.mass_scale = robot.get(kRobotMassScale);
   config.robot = scale_masses(load_robot(robot, urdf, loaded), config.mass_scale);
+  scale_plants_of(robot, config);
 
   const ConfigTable physics = table.get_table_or_empty(kPhysicsSettings);
   config.engines = read_engines(physics, engines);
@@ -178,7 +223,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   config.torque_per_mass_n_m_per_kg =
       table.get_table_or_empty(kMotorSettings).get(kMotorsTorquePerMass);
   config.perturbation = read_perturbation(table.get_table_or_empty(kPerturbationSettings),
-                                          config.robot.joint_count(), loaded);
+                                          {config.robot, config.start}, loaded);
   check_limits(table.get_table_or_empty(kObjectiveSettings), config);
   config.requirements = read_requirements(table.get_tables_or_empty(kRequirementSettings), config);
   loaded.problem = make_tracking(std::move(config), variables, urdf);
