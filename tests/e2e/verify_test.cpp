@@ -155,7 +155,7 @@ TEST_F(Verify, EndsForEveryRobotAndSaysWhatCouldNotBeSimulated) {
       run({"verify", "start", "--robot", "arm7", "--cases", "1", "--engines", "articulated",
            "--substeps", "10", "--perturbations", "none,friction,load-0-40,lighter-rotors"});
   EXPECT_THAT(outcome.exit_code, testing::AnyOf(0, 3)) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("articulated, 10 substeps, load-0-40: 0 to 2."));
+  EXPECT_THAT(outcome.out, HasSubstr("articulated, 10 substeps, load-0-40: 0 to 1.98 kg"));
   EXPECT_THAT(outcome.out,
               HasSubstr("articulated, 10 substeps, rotors -50 %: no joint of the robot "
                         "has an armature (robot.plant); try added-rotors"));
