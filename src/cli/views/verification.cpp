@@ -137,13 +137,13 @@ const std::vector<OtherPlant>& other_plants() {
        is_elastic,
        "no joint of the robot is elastic (robot.plant); try elastic or elastic-rotors"},
       {"elastic",
-       "elastic joints",
+       "elastic",
        {.elastic_hz = kElastic_hz},
        is_rigid_with_armature,
        "no joint of the robot has an armature, or one is elastic (robot.plant); try "
        "elastic-rotors or softer"},
       {"elastic-rotors",
-       "elastic, rotors added",
+       "elastic",
        {.armature_share = kAddedArmatureShare, .elastic_hz = kElastic_hz},
        lacks_armature,
        "a joint of the robot has an armature; try elastic or softer"}};

@@ -161,7 +161,7 @@ TEST(VerifyConclusion, NamesWhatCouldNotBeSimulated) {
   EXPECT_STREQ(to_string(rows.back().verdict), "not simulated");
   EXPECT_EQ(conclude("mine", rows),
             "mine holds in 1 of the 2 settings beside its own. Other plants: It holds with "
-            "friction. It could not be simulated with elastic joints.");
+            "friction. It could not be simulated with elastic.");
 }
 
 TEST(OtherPlants, SuitWhatTheRobotHas) {
