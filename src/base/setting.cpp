@@ -139,18 +139,27 @@ std::string find_key_unit(std::string_view key) {
   // Longer endings come first: each ends like the next shorter one.
   constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
       {"_n_m_s_per_rad", "N m s/rad"},
+      {"_n_m_per_rad", "N m/rad"},
       {"_n_m_per_kg", "N m/kg"},
       {"_m_per_s2", "m/s^2"},
       {"_rad_per_s", "rad/s"},
+      {"_rad_per_m", "rad/m"},
+      {"_n_s_per_m", "N s/m"},
+      {"_n_per_m", "N/m"},
       {"_kg_per_m3", "kg/m^3"},
+      {"_kg_m2", "kg m^2"},
       {"_m_per_s", "m/s"},
       {"_n_m", "N m"},
       {"_rad", "rad"},
       {"_kg", "kg"},
+      {"_m2", "m^2"},
+      {"_m3", "m^3"},
+      {"_pa", "Pa"},
       {"_m", "m"},
       {"_n", "N"},
       {"_s", "s"},
       {"_j", "J"},
+      {"_hz", "Hz"},
   };
   for (const auto& [ending, unit] : kUnits) {
     if (key.ends_with(ending)) {

@@ -20,8 +20,9 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// What is tried under a design's own engine and time step: of configs/perturbations all but weak.
-constexpr std::size_t kPresets = 6;
+// What is tried under a design's own engine and time step: of configs/perturbations all but weak,
+// and added rotors with rigid and with elastic joints.
+constexpr std::size_t kPresets = 8;
 
 class Verify : public testing::Test {
  protected:
@@ -145,6 +146,20 @@ TEST_F(Verify, PrintsATableAndAConclusion) {
                                  HasSubstr("its own setting"), HasSubstr("table-a10 holds in "),
                                  ContainsRegex("\nengine +substeps  plant ")));
   EXPECT_THAT(outcome.err, HasSubstr("--problem is not given; using q2-e6"));
+}
+
+// An arm of 7 joints: its loads are shares of its mass, and a plant that does not suit it costs a row
+// and not the command.
+TEST_F(Verify, EndsForEveryRobotAndSaysWhatCouldNotBeSimulated) {
+  const Outcome outcome =
+      run({"verify", "start", "--robot", "arm7", "--cases", "1", "--engines", "articulated",
+           "--substeps", "10", "--perturbations", "none,friction,load-0-40,lighter-rotors"});
+  EXPECT_THAT(outcome.exit_code, testing::AnyOf(0, 3)) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("articulated, 10 substeps, load-0-40: 0 to 1.98 kg"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("articulated, 10 substeps, rotors -50 %: no joint of the robot "
+                        "has an armature (robot.plant); try added-rotors"));
+  EXPECT_THAT(outcome.out, ContainsRegex("rotors -50 % +- +- +- +- +- +not simulated"));
 }
 
 // Soft controllers hardly notice the time step, and this workspace asks little of them.

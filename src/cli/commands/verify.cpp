@@ -43,12 +43,14 @@ The command simulates the design in all combinations of: every engine of this bu
 physics per control period (physics.substeps); and all masses and inertias of the arm at -10 %, 0 and +10 %
 (robot.mass_scale). It also simulates the design in its own engine and time step on perturbed plants, that is, arms that
 differ from the nominal one, with another plant for each case. It uses all shipped perturbations except those that
-weaken motors or change gains. With --perturbations, these are combined with all engines and substeps. A list that is
-not given keeps its default. Each setting is compared with the design's own setting, the problem as it is:
+weaken motors or change gains. Then it changes the friction, the rotors and the elasticity of the joints. With
+--perturbations, the named plants are combined with all engines and substeps. A list that is not given keeps its default. Each setting is compared with the design's own setting, the problem as it is:
 
   holds   not more cases fail than in its own setting, and the median error is at most 1.1 times its own
   worse   not more cases fail than in its own setting, but the median error is larger than that
   fails   more cases fail, or the median error is more than 10 times its own or does not exist
+
+A setting that cannot be simulated has a row with the reason. It is no failure of the design.
 
 A failure is a case with an error above 100 mm or without a number. For the first failure of each setting, the command
 that simulates it again and writes its trajectory is printed. The exit code is 3 if any setting is worse or fails.)";
@@ -71,6 +73,8 @@ struct VerifiedDesign {
   std::vector<VerifyRow> rows;       // the first is the design's own setting
   std::vector<ErrorSurvey> surveys;  // one per row
   std::vector<std::string> replays;  // one per row: the command for its first failure, or empty
+  // One per row: the loads, if they are shares of the robot's mass.
+  std::vector<std::optional<std::pair<double, double>>> loads_kg;
 };
 
 VerifySetting get_own_setting(const TrackingProblem& problem) {
@@ -103,7 +107,7 @@ std::string format_text(const VerifiedDesign& verified, const Style& style) {
     table.add_row({row.setting.engine, fmt::format("{}", row.setting.substeps),
                    sanitize(describe_plant(row.setting)), format_mm(row.summary.mean),
                    format_mm(row.summary.median), format_mm(row.summary.worst),
-                   fmt::format("{}", row.summary.failures),
+                   row.fault.empty() ? fmt::format("{}", row.summary.failures) : "-",
                    row.ratio ? format_significant(*row.ratio, 3) : "-",
                    own ? "its own setting" : to_string(row.verdict)});
   }
@@ -112,6 +116,20 @@ std::string format_text(const VerifiedDesign& verified, const Style& style) {
        wrap_words(conclude(sanitize(verified.design), verified.rows), 100)) {
     text += line + "\n";
   }
+  const auto add_lines = [&](const char* heading, const auto& describe) {
+    for (std::size_t i = 0; i < verified.rows.size(); ++i) {
+      if (const std::string words = describe(i); !words.empty()) {
+        text += fmt::format("{}  {}: {}\n", std::exchange(heading, ""),
+                            describe_setting(verified.rows[i].setting), words);
+      }
+    }
+  };
+  add_lines("\nLoads for this robot:\n", [&](std::size_t i) {
+    const auto& load_kg = verified.loads_kg[i];
+    return load_kg ? fmt::format("{:.4g} to {:.4g} kg", load_kg->first, load_kg->second) : "";
+  });
+  add_lines("\nSettings that could not be simulated:\n",
+            [&](std::size_t i) { return sanitize(verified.rows[i].fault); });
   const char* title = "\nCommands that simulate the first failure of each setting again:\n";
   for (std::size_t i = 0; i < verified.rows.size(); ++i) {
     if (!verified.replays[i].empty()) {
@@ -124,8 +142,9 @@ std::string format_text(const VerifiedDesign& verified, const Style& style) {
 }
 
 bool holds(const VerifiedDesign& verified) {
-  return std::ranges::all_of(verified.rows,
-                             [](const VerifyRow& row) { return row.verdict == Verdict::holds; });
+  return std::ranges::none_of(verified.rows, [](const VerifyRow& row) {
+    return row.verdict == Verdict::worse || row.verdict == Verdict::fails;
+  });
 }
 
 std::string format_json(const VerifiedDesign& verified) {
@@ -145,8 +164,13 @@ std::string format_json(const VerifiedDesign& verified) {
                 {"without_number", row.summary.without_number},
                 {"median_ratio", to_json_value(row.ratio)},
                 {"verdict", to_string(row.verdict)}};
-    if (!verified.surveys[i].reason.empty()) {
+    if (!row.fault.empty()) {
+      one["reason"] = sanitize(row.fault);
+    } else if (!verified.surveys[i].reason.empty()) {
       one["reason"] = sanitize(verified.surveys[i].reason);
+    }
+    if (const auto& load_kg = verified.loads_kg[i]) {
+      one["load_kg"] = {load_kg->first, load_kg->second};
     }
     if (!verified.replays[i].empty()) {
       one["first_failure"] = verified.surveys[i].first_failure;
@@ -167,18 +191,37 @@ std::string format_json(const VerifiedDesign& verified) {
          "\n";
 }
 
+// Returns the settings of the problem that change all joints beside its own changes.
+std::vector<std::string> list_scale_overrides(const PlantScales& changes, const PlantScales& own) {
+  std::vector<std::string> overrides;
+  const auto add = [&](const char* key, double value, double usual) {
+    if (value != usual) {
+      overrides.push_back(fmt::format("robot.{}={}", key, format_exact(value)));
+    }
+  };
+  add("friction_scale", own.friction * changes.friction, own.friction);
+  add("armature_scale", own.armature * changes.armature, own.armature);
+  add("stiffness_scale", own.stiffness * changes.stiffness, own.stiffness);
+  add("armature_share", std::max(own.armature_share, changes.armature_share), own.armature_share);
+  add("elastic_hz", changes.elastic_hz > 0 ? changes.elastic_hz : own.elastic_hz, own.elastic_hz);
+  return overrides;
+}
+
 // Returns the settings of the problem that make the setting's plants.
 std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
                                               const TrackingConfig& config) {
   if (setting.perturbation.empty()) {
     return {};
   }
+  if (const OtherPlant* other = find_other_plant(setting.perturbation)) {
+    return list_scale_overrides(other->changes, config.plant_scales);
+  }
   if (setting.perturbation == kNoPerturbation) {
     return config.perturbation.applies_to(CaseRole::test) ? make_overrides(Perturbation{})
                                                           : std::vector<std::string>{};
   }
   if (config.perturbation.changes_anything()) {
-    Perturbation plants = load_perturbation(setting.perturbation, config.robot.joint_count());
+    Perturbation plants = load_perturbation(setting.perturbation, {config.robot, config.start});
     plants.where =
         Perturbation::Where::everywhere;  // also a preset that is meant for training only
     return make_overrides(plants);
@@ -186,11 +229,34 @@ std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
   return {"perturbation.preset=" + setting.perturbation, "perturbation.apply_to=everywhere"};
 }
 
+// Returns the task that was proposed for the robot as settings, so that a setting with other masses
+// or another plant has the same task.
+std::vector<std::string> list_proposed_task(const LoadedProblem& base) {
+  const json resolved = json::parse(base.resolved_json);
+  std::vector<std::string> overrides;
+  if (!resolved.at("robot").value("propose", false)) {
+    return overrides;
+  }
+  const std::pair<const char*, std::vector<const char*>> proposed[] = {
+      {"task", {"orientation", "tool_rpy_rad", "home", "distance_limit_m", "speed_m_per_s"}},
+      {"workspace", {"centre_m", "radius_m", "shortest_move_m", "normal"}}};
+  for (const auto& [table, keys] : proposed) {
+    for (const char* key : keys) {
+      if (resolved.contains(table) && resolved.at(table).contains(key)) {
+        overrides.push_back(fmt::format("{}.{}={}", table, key, resolved.at(table).at(key).dump()));
+      }
+    }
+  }
+  return overrides;
+}
+
 // Returns all changes of the problem's file for this setting: those of the user, then those of the
 // setting.
 std::vector<std::string> list_overrides(const VerifyOptions& options, const VerifySetting& setting,
-                                        const TrackingConfig& config) {
-  std::vector<std::string> changes = list_plant_overrides(setting, config);
+                                        const LoadedProblem& base) {
+  const TrackingConfig& config = base.tracking()->config();
+  std::vector<std::string> changes = list_proposed_task(base);
+  std::ranges::move(list_plant_overrides(setting, config), std::back_inserter(changes));
   changes.push_back("physics.engine=" + setting.engine);
   changes.push_back("physics.judging_engine=" + setting.engine);
   // Designs are judged in double. Only some engines have a SIMD level.
@@ -231,31 +297,25 @@ std::string make_replay(const VerifyOptions& options, std::span<const std::strin
   return quote_command(words);
 }
 
-// Returns the presets that a design should hold with. Presets for training only are left out. So
-// are presets for another number of joints, which is reported on stderr unless `quiet`.
-std::vector<std::string> list_usual_presets(std::size_t joints, bool quiet) {
-  std::vector<std::string> presets;
-  std::vector<std::string> of_others;
+// Returns the presets that a design should hold with, without those for training only, and then the
+// other plants that suit the robot.
+std::vector<std::string> list_usual_plants(const TrackingConfig& config) {
+  std::vector<std::string> plants;
   for (const std::string& name : list_configs("perturbations")) {
-    try {
-      if (!load_perturbation(name, joints).changes_design()) {
-        presets.push_back(name);
-      }
-    } catch (const Error&) {  // a shipped file has no other fault than the number of joints
-      of_others.push_back(name);
+    if (!load_perturbation(name, {config.robot, config.start}).changes_design()) {
+      plants.push_back(name);
     }
   }
-  if (!of_others.empty() && !quiet) {
-    write_message(
-        fmt::format("left out, as they are for an arm with another number of joints: {}; "
-                    "--perturbations accepts files of your own (docs/robust.md)",
-                    join(of_others, ", ")));
+  for (const OtherPlant& other : other_plants()) {
+    if (other.suits(config.robot)) {
+      plants.push_back(other.name);
+    }
   }
-  return presets;
+  return plants;
 }
 
 VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& own,
-                           std::size_t joints) {
+                           const TrackingConfig& config) {
   VerifyMatrix matrix{engine_names(), kUsualSubsteps, kUsualPlants, {}};
   matrix.substeps.push_back(own.substeps);
   if (!options.engines.empty()) {
@@ -271,11 +331,14 @@ VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& ow
     }
   }
   if (options.perturbations.empty()) {
-    matrix.own_plants = list_usual_presets(joints, options.quiet);
+    matrix.own_plants = list_usual_plants(config);
     return matrix;
   }
   std::vector<std::string> known = list_configs("perturbations");
   known.insert(known.begin(), kUsualPlants.begin(), kUsualPlants.end());
+  for (const OtherPlant& other : other_plants()) {
+    known.push_back(other.name);
+  }
   for (const std::string& name : options.perturbations) {
     const bool is_path = name.find('/') != std::string::npos || name.ends_with(".toml");
     if (!is_path && std::ranges::find(known, name) == known.end()) {
@@ -285,6 +348,39 @@ VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& ow
   }
   matrix.plants = options.perturbations;
   return matrix;
+}
+
+// The problem of one setting, or the reason why it cannot be made.
+struct PreparedSetting {
+  std::vector<std::string> overrides;
+  std::optional<LoadedProblem> problem;
+  std::string fault;
+};
+
+// Throws Error if the fault is in a preset that the user named, or in the design's own setting.
+PreparedSetting prepare_setting(const VerifyOptions& options, const DesignFile& design,
+                                const std::string& named, const VerifySetting& setting,
+                                const LoadedProblem& base, bool is_own) {
+  PreparedSetting prepared;
+  const OtherPlant* other = find_other_plant(setting.perturbation);
+  if (other != nullptr && !other->suits(base.tracking()->config().robot)) {
+    prepared.fault = other->lack;
+    return prepared;
+  }
+  try {
+    prepared.overrides = list_overrides(options, setting, base);
+    prepared.problem = load_problem_of_design(design, named, prepared.overrides, true);
+  } catch (const Error& error) {
+    const bool is_named_preset =
+        !options.perturbations.empty() && other == nullptr &&
+        std::ranges::find(kUsualPlants, setting.perturbation) == kUsualPlants.end();
+    if (is_own || is_named_preset) {
+      throw;
+    }
+    prepared.problem.reset();
+    prepared.fault = error.what();
+  }
+  return prepared;
 }
 
 int run_verify(const VerifyOptions& options, Session& session) {
@@ -299,37 +395,55 @@ int run_verify(const VerifyOptions& options, Session& session) {
     cases.count = std::min(cases.count, kUsualCases);
   }
   const VerifySetting own_setting = get_own_setting(tracking);
-  const auto settings = list_verify_settings(
-      own_setting, choose_matrix(options, own_setting, tracking.config().robot.joint_count()));
+  const auto settings =
+      list_verify_settings(own_setting, choose_matrix(options, own_setting, tracking.config()));
   // All settings are validated before the first is simulated.
-  std::vector<std::vector<std::string>> overrides;
-  std::vector<LoadedProblem> problems;
+  std::vector<PreparedSetting> prepared;
   for (const VerifySetting& setting : settings) {
-    overrides.push_back(list_overrides(options, setting, tracking.config()));
-    problems.push_back(load_problem_of_design(design, named, overrides.back(), true));
+    prepared.push_back(prepare_setting(options, design, named, setting, base, prepared.empty()));
   }
 
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
-  VerifiedDesign verified{design.name, base.name, cases, {}, {}, {}};
+  VerifiedDesign verified{design.name, base.name, cases, {}, {}, {}, {}};
   Progress progress;
   progress.total = cases.count * settings.size();
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    auto survey = survey_with_progress(*problems[i].tracking(), design.design, cases, jobs,
-                                       session.stop, bar, progress);
-    problems[i] = {};  // frees its target tables
-    if (!survey) {
+    PreparedSetting& one = prepared[i];
+    std::optional<ErrorSurvey> survey;
+    verified.loads_kg.emplace_back();
+    try {
+      if (one.problem) {
+        const Perturbation& plants = one.problem->tracking()->config().perturbation;
+        verified.loads_kg.back() = plants.load_share ? plants.load_kg : std::nullopt;
+        survey = survey_with_progress(*one.problem->tracking(), design.design, cases, jobs,
+                                      session.stop, bar, progress);
+      }
+    } catch (const Error& error) {
+      if (i == 0) {
+        throw;
+      }
+      one.fault = error.what();
+    }
+    one.problem.reset();  // frees its target tables
+    if (!survey && one.fault.empty()) {
       bar.clear();
       write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
       return get_stop_code(session.stop.reason());
     }
     progress.done += cases.count;
+    if (!survey) {
+      verified.rows.push_back(make_missing_row(settings[i], one.fault));
+      verified.replays.emplace_back();
+      verified.surveys.emplace_back();
+      continue;
+    }
     const ErrorSummary& own =
         verified.rows.empty() ? survey->summary : verified.rows.front().summary;
     verified.rows.push_back(judge_setting(settings[i], survey->summary, own));
     verified.replays.push_back(survey->summary.failures == 0
                                    ? ""
-                                   : make_replay(options, overrides[i], survey->first_failure));
+                                   : make_replay(options, one.overrides, survey->first_failure));
     verified.surveys.push_back(std::move(*survey));
   }
   bar.clear();
@@ -370,8 +484,12 @@ void add_verify(CLI::App& app, Session& session) {
           "--perturbations", options->perturbations,
           "Plants to try: none; lighter and heavier (all masses -10 and +10 %); a shipped\n"
           "perturbation (docs/robust.md: masses-10, load-0-40, friction, sensor, ripple, all\n"
-          "(these five together), weak); or the path of such a file (default: none, lighter,\n"
-          "heavier, and all shipped perturbations except weak)")
+          "(these five together), weak); the path of such a file; or another plant: "
+          "more-friction,\n"
+          "lighter-rotors, heavier-rotors, added-rotors, softer, elastic, elastic-rotors\n"
+          "(docs/verify.md; default: none, lighter, heavier, all shipped perturbations except "
+          "weak,\n"
+          "and the other plants that suit the robot)")
       ->delimiter(',')
       ->type_name("NAMES");
   add_jobs_flag(*command, options->jobs);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/text.hpp"
 #include "cli/list/list_views.hpp"
 #include "cli/terminal/format.hpp"
@@ -14,6 +15,7 @@
 #include "cli/views/result_view.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/design_file.hpp"
+#include "problems/config/plant_file.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace armwright {
@@ -21,22 +23,23 @@ namespace {
 
 using nlohmann::json;
 
-// A robot as it is loaded without options. If the user must name a tip, the model ends at the tip
+// A robot as --robot loads it, with its friction and the plant of the file beside it. If the user must name a tip, the model ends at the tip
 // with the fewest joints.
 struct ListedRobot {
   RobotModel model;
   std::vector<std::string> tips;  // the possible tips if the user must name one; otherwise empty
   std::string tip;                // the tip at which the model ends
+  std::string plant_file;         // empty: there is none
 };
 
 ListedRobot load_listed(const std::filesystem::path& file) {
   ListedRobot robot;
   try {
-    robot.model = load_urdf(file);
+    robot.model = load_urdf(file, {.dynamics = true});
   } catch (const RobotOptionError& error) {
     for (const std::string& leaf : error.leaves()) {
       try {
-        RobotModel model = load_urdf(file, {.tip = leaf});
+        RobotModel model = load_urdf(file, {.tip = leaf, .dynamics = true});
         if (robot.tips.empty() || model.joint_count() < robot.model.joint_count()) {
           robot.model = std::move(model);
           robot.tip = leaf;
@@ -48,6 +51,10 @@ ListedRobot load_listed(const std::filesystem::path& file) {
     if (robot.tips.empty()) {
       throw;
     }
+  }
+  if (const auto plant = name_plant_file(file); path_exists(plant)) {
+    load_plant(plant, robot.model);
+    robot.plant_file = plant.string();
   }
   return robot;
 }
@@ -104,6 +111,17 @@ std::string explain_robot(const std::string& name, const Style& style) {
   if (!listed.tips.empty()) {
     text += fmt::format("\n  The joints{}.\n", describe_tips(listed));
   }
+  if (robot.has_plant()) {
+    text += fmt::format("\n  Between motors and links, as {}:\n",
+                        listed.plant_file.empty() ? "<dynamics> states it"
+                                                  : fmt::format("<dynamics> and {} state it",
+                                                                sanitize(listed.plant_file)));
+    for (const Joint& joint : robot.joints) {
+      if (!joint.plant.is_ideal()) {
+        text += fmt::format("    {}: {}\n", sanitize(joint.name), describe_plant(joint));
+      }
+    }
+  }
   for (const std::string& note : robot.notes) {
     text += fmt::format("  note: {}\n", note);
   }
@@ -120,15 +138,19 @@ json explain_robot_as_json(const std::string& name) {
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
     const Joint& joint = robot.joints[i];
     const bool slides = joint.kind == JointKind::prismatic;
-    joints.push_back(
-        {{"name", sanitize(joint.name)},
-         {"kind", slides ? "prismatic" : "revolute"},
-         {"link", sanitize(robot.links[i].name)},
-         {"mass_kg", robot.links[i].inertial.mass_kg},
-         {slides ? "lower_m" : "lower_rad", finite(joint.lower)},
-         {slides ? "upper_m" : "upper_rad", finite(joint.upper)},
-         {slides ? "speed_limit_m_per_s" : "speed_limit_rad_per_s", finite(joint.speed_limit)},
-         {slides ? "effort_limit_n" : "effort_limit_n_m", finite(joint.effort_limit)}});
+    json described = {
+        {"name", sanitize(joint.name)},
+        {"kind", slides ? "prismatic" : "revolute"},
+        {"link", sanitize(robot.links[i].name)},
+        {"mass_kg", robot.links[i].inertial.mass_kg},
+        {slides ? "lower_m" : "lower_rad", finite(joint.lower)},
+        {slides ? "upper_m" : "upper_rad", finite(joint.upper)},
+        {slides ? "speed_limit_m_per_s" : "speed_limit_rad_per_s", finite(joint.speed_limit)},
+        {slides ? "effort_limit_n" : "effort_limit_n_m", finite(joint.effort_limit)}};
+    if (!joint.plant.is_ideal()) {
+      described["plant"] = describe_plant(joint);
+    }
+    joints.push_back(std::move(described));
   }
   json tips = json::array();
   for (const std::string& tip : listed.tips) {

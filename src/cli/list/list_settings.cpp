@@ -11,6 +11,7 @@
 #include "cli/list/list_views.hpp"
 #include "cli/terminal/markdown.hpp"
 #include "problems/config/design_file.hpp"
+#include "problems/config/plant_file.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "study/compare/study_plan.hpp"
 
@@ -42,6 +43,10 @@ std::vector<SettingFile> list_setting_files() {
        "`configs/designs/NAME.toml`, or the `winner.toml` of a run. The controller determines "
        "which gains there are.",
        list_settings(design_settings())},
+      {"plant:", "Plants",
+       "`NAME.plant.toml` beside `NAME.urdf`, or a file that `robot.plant` names "
+       "([robots.md](../robots.md)). A table `[joint.NAME]` describes the joint NAME of the URDF.",
+       list_settings(plant_settings())},
   };
 }
 

@@ -43,13 +43,47 @@ std::string describe_all(const Rows& rows, const std::string& preposition,
                          : fmt::format(" It {} {} {}.", verb, preposition, enumerate(names));
   };
   return list(Verdict::holds, "holds", false) + list(Verdict::worse, "gets worse", true) +
-         list(Verdict::fails, "fails", true);
+         list(Verdict::fails, "fails", true) +
+         list(Verdict::missing, "could not be simulated", false);
 }
 
-bool all_hold(std::span<const VerifyRow> rows) {
-  return std::ranges::all_of(rows,
-                             [](const VerifyRow& row) { return row.verdict == Verdict::holds; });
+bool is_bad(const VerifyRow& row) {
+  return row.verdict == Verdict::worse || row.verdict == Verdict::fails;
 }
+
+template <class Has>
+bool any_plant(const RobotModel& robot, const Has& has) {
+  return std::ranges::any_of(robot.joints, [&](const Joint& joint) { return has(joint.plant); });
+}
+
+bool has_friction(const RobotModel& robot) {
+  return any_plant(robot, [](const JointPlant& plant) { return plant.has_friction(); });
+}
+
+bool has_armature(const RobotModel& robot) {
+  return any_plant(robot, [](const JointPlant& plant) { return plant.armature > 0; });
+}
+
+bool is_elastic(const RobotModel& robot) {
+  return any_plant(robot, [](const JointPlant& plant) { return plant.is_elastic(); });
+}
+
+bool is_rigid_with_armature(const RobotModel& robot) {
+  return has_armature(robot) && !is_elastic(robot);
+}
+
+bool lacks_armature(const RobotModel& robot) {
+  return !has_armature(robot);
+}
+
+constexpr const char* kNoArmature =
+    "no joint of the robot has an armature (robot.plant); try added-rotors";
+// Half of the inertia that a joint moves: an assumption. The rotors of a PUMA 560 have more than
+// half of its shoulder's inertia.
+constexpr double kAddedArmatureShare = 0.5;
+// The motors of the axes 1 to 3 of a KUKA KR300 swing at 12 to 15 Hz: their stiffnesses are 4.1 to
+// 7.5e6 N m/rad, their armatures 609 to 844 kg m^2 (Weigand et al., 2021).
+constexpr double kElastic_hz = 15;
 
 }  // namespace
 
@@ -82,7 +116,49 @@ std::vector<VerifySetting> list_verify_settings(const VerifySetting& own,
   return settings;
 }
 
+const std::vector<OtherPlant>& other_plants() {
+  static const std::vector<OtherPlant> plants = {
+      {"more-friction",
+       "friction x 2",
+       {.friction = 2},
+       has_friction,
+       "no joint of the robot has friction (<dynamics>, robot.plant); the preset friction adds "
+       "some"},
+      {"lighter-rotors", "rotors -50 %", {.armature = 0.5}, has_armature, kNoArmature},
+      {"heavier-rotors", "rotors +50 %", {.armature = 1.5}, has_armature, kNoArmature},
+      {"added-rotors",
+       "rotors added",
+       {.armature_share = kAddedArmatureShare},
+       lacks_armature,
+       "a joint of the robot has an armature; try heavier-rotors"},
+      {"softer",
+       "stiffness -50 %",
+       {.stiffness = 0.5},
+       is_elastic,
+       "no joint of the robot is elastic (robot.plant); try elastic or elastic-rotors"},
+      {"elastic",
+       "elastic",
+       {.elastic_hz = kElastic_hz},
+       is_rigid_with_armature,
+       "no joint of the robot has an armature, or one is elastic (robot.plant); try "
+       "elastic-rotors or softer"},
+      {"elastic-rotors",
+       "elastic",
+       {.armature_share = kAddedArmatureShare, .elastic_hz = kElastic_hz},
+       lacks_armature,
+       "a joint of the robot has an armature; try elastic or softer"}};
+  return plants;
+}
+
+const OtherPlant* find_other_plant(const std::string& name) {
+  const auto found = std::ranges::find(other_plants(), name, &OtherPlant::name);
+  return found == other_plants().end() ? nullptr : &*found;
+}
+
 std::string describe_plant(const VerifySetting& setting) {
+  if (const OtherPlant* plant = find_other_plant(setting.perturbation)) {
+    return plant->words;
+  }
   if (setting.mass_factor != 1) {
     return fmt::format("masses {:+.0f} %", 100 * (setting.mass_factor - 1));
   }
@@ -97,6 +173,8 @@ const char* to_string(Verdict verdict) {
       return "worse";
     case Verdict::fails:
       return "fails";
+    case Verdict::missing:
+      return "not simulated";
   }
   return "?";
 }
@@ -113,6 +191,10 @@ VerifyRow judge_setting(const VerifySetting& setting, const ErrorSummary& summar
     row.verdict = Verdict::worse;
   }
   return row;
+}
+
+VerifyRow make_missing_row(const VerifySetting& setting, const std::string& fault) {
+  return {setting, {}, {}, Verdict::missing, fault};
 }
 
 std::string conclude(const std::string& design, std::span<const VerifyRow> rows) {
@@ -147,14 +229,14 @@ std::string conclude(const std::string& design, std::span<const VerifyRow> rows)
   add("Time steps", substeps, "with", [](const VerifySetting& s) {
     return format_count(static_cast<unsigned long long>(s.substeps), "substep");
   });
-  if (!all_hold(substeps)) {
+  if (std::ranges::any_of(substeps, is_bad)) {
     text +=
         " More substeps are closer to the real arm, so the design depends on the time step of the"
         " simulation.";
   }
   add("Masses", masses, "with",
       [](const VerifySetting& s) { return fmt::format("{:+.0f} %", 100 * (s.mass_factor - 1)); });
-  add("Perturbed plants", plants, "with", describe_plant);
+  add("Other plants", plants, "with", describe_plant);
   if (!mixed.empty()) {
     const auto mixed_holding = std::ranges::count(mixed, Verdict::holds, &VerifyRow::verdict);
     text += fmt::format(" If several of these change at once, it holds in {} of {} settings.",

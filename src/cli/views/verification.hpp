@@ -1,6 +1,6 @@
 // Checks whether a design holds, that is, whether it works about as well under conditions that
 // differ little from its own: other physics engines, finer time steps, slightly different masses,
-// and perturbed plants.
+// perturbed plants, and other friction, rotors and elasticity.
 #pragma once
 
 #include <optional>
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/robot/robot_model.hpp"
 #include "study/statistics/summary.hpp"
 
 namespace armwright {
@@ -17,7 +18,8 @@ struct VerifySetting {
   std::string engine;
   int substeps = 1;
   double mass_factor = 1;  // multiplies the problem's own factor
-  // A preset of perturbed plants, "none" (kNoPerturbation), or "" for the problem's own plants.
+  // A preset of perturbed plants, "none" (kNoPerturbation), a name of other_plants(), or "" for the
+  // problem's own plants.
   std::string perturbation = "none";
 
   bool operator==(const VerifySetting&) const = default;
@@ -26,6 +28,18 @@ struct VerifySetting {
 inline constexpr const char* kNoPerturbation = "none";
 inline constexpr const char* kLighter = "lighter";  // all masses -10 %, the same in all cases
 inline constexpr const char* kHeavier = "heavier";  // all masses +10 %
+
+// A plant whose friction, rotors or elasticity differ from the robot's, the same in all cases.
+struct OtherPlant {
+  std::string name;     // "more-friction"
+  std::string words;    // "friction x 2"
+  PlantScales changes;  // beside the problem's own; `friction`, `armature` and `stiffness` multiply
+  // Returns whether the robot has what the plant changes.
+  bool (*suits)(const RobotModel& robot);
+  const char* lack;  // why it cannot be made for another robot
+};
+const std::vector<OtherPlant>& other_plants();
+const OtherPlant* find_other_plant(const std::string& name);  // null: none has that name
 
 // The conditions that are combined with each other. Plants are kNoPerturbation, kLighter, kHeavier
 // and names of presets.
@@ -42,10 +56,12 @@ inline const std::vector<std::string> kUsualPlants = {kNoPerturbation, kLighter,
 // engine comes before the others.
 std::vector<VerifySetting> list_verify_settings(const VerifySetting& own,
                                                 const VerifyMatrix& matrix);
-// Returns "masses -10 %", the preset's name, or "own" for the problem's own plants.
+// Returns "masses -10 %", the words of another plant, the preset's name, or "own" for the problem's
+// own plants.
 std::string describe_plant(const VerifySetting& setting);
 
-enum class Verdict { holds, worse, fails };
+// `missing`: the setting could not be simulated.
+enum class Verdict { holds, worse, fails, missing };
 const char* to_string(Verdict verdict);
 
 // Limits of the ratio between the median error in a setting and the median error in the design's
@@ -59,6 +75,7 @@ struct VerifyRow {
   ErrorSummary summary;
   std::optional<double> ratio;  // of its median error to that in the design's own setting
   Verdict verdict = Verdict::holds;
+  std::string fault = {};  // why it could not be simulated
 };
 
 // Returns the verdict on one setting. It is `fails` if more cases fail than in the design's own
@@ -66,6 +83,9 @@ struct VerifyRow {
 // exceeds kWorseRatio, and `holds` otherwise.
 VerifyRow judge_setting(const VerifySetting& setting, const ErrorSummary& summary,
                         const ErrorSummary& own);
+
+// Returns the row of a setting that could not be simulated.
+VerifyRow make_missing_row(const VerifySetting& setting, const std::string& fault);
 
 // Returns the conclusion as one paragraph. The first row must be the design's own setting.
 std::string conclude(const std::string& design, std::span<const VerifyRow> rows);

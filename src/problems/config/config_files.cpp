@@ -113,8 +113,10 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
   const std::string extension = get_extension(kind);
   const std::filesystem::path path(name_or_path);
   const bool has_folder = name_or_path.find('/') != std::string_view::npos;
-  const bool is_xacro = kind == "robots" && path.extension() == ".xacro";  // load_urdf() refuses it
-  if (has_folder || path.extension() == extension || is_xacro) {
+  // A robot may have a plant's file beside its URDF. load_urdf() refuses .xacro with advice.
+  const bool is_of_robot =
+      kind == "robots" && (path.extension() == ".xacro" || path.extension() == ".toml");
+  if (has_folder || path.extension() == extension || is_of_robot) {
     for (const auto& candidate : {beside / path, path}) {
       if (is_file(candidate)) {
         return candidate;

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/problem_readers.hpp"
+#include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {
 namespace {
@@ -46,6 +49,37 @@ const Setting<double> kPlantFrictionTransition{
     {.lower = 1e-6, .upper = 1e3},
     Perturbation{}.friction_transition_rad_per_s,
     "speed from which on Coulomb friction has its full size"};
+const Setting<std::vector<std::string>> kPlantRobots{
+    "robots", kNoDefault,
+    "names of the robots that load_kg and the numbers per joint are for. Another robot gets the "
+    "shares in their place (default, and []: all robots get both)"};
+const Setting<std::vector<double>> kPlantLoadShare{
+    "load_share",
+    {.lower = 0, .upper = 10},
+    kNoDefault,
+    "the lightest and the heaviest load as shares of the mass of the moving links, two numbers; "
+    "[]: the task's load"};
+const Setting<double> kPlantViscousShare{
+    "viscous_friction_share",
+    {.lower = 0, .upper = 1},
+    Perturbation{}.viscous_friction_share,
+    "largest viscous friction at 1 rad/s or 1 m/s, as a share of each joint's effort limit at the "
+    "start of the optimization"};
+const Setting<double> kPlantCoulombShare{
+    "coulomb_friction_share",
+    {.lower = 0, .upper = 1},
+    Perturbation{}.coulomb_friction_share,
+    "largest Coulomb friction, as a share of the same effort limits"};
+constexpr Range kSpread{.lower = 0, .upper = 0.9};
+const Setting<double> kPlantFriction{
+    "friction_relative", kSpread, Perturbation{}.friction_relative,
+    "friction of the robot's joints differs by at most this share"};
+const Setting<double> kPlantArmature{
+    "armature_relative", kSpread, Perturbation{}.armature_relative,
+    "armature of the robot's joints differs by at most this share"};
+const Setting<double> kPlantStiffness{
+    "stiffness_relative", kSpread, Perturbation{}.stiffness_relative,
+    "stiffness of the robot's joints, and their damping, differ by at most this share"};
 const Setting<double> kPlantQuantisation{
     "quantisation_rad",
     {.lower = 0, .upper = 0.1},
@@ -84,9 +118,11 @@ std::vector<double> read_joints(const ConfigTable& table,
   return values;
 }
 
-std::optional<std::pair<double, double>> read_load(
-    const ConfigTable& table, std::optional<std::pair<double, double>> fallback) {
-  const auto values = table.find(kPlantLoad);
+using Interval = std::optional<std::pair<double, double>>;
+
+Interval read_interval(const ConfigTable& table, const Setting<std::vector<double>>& setting,
+                       const Interval& fallback) {
+  const auto values = table.find(setting);
   if (!values) {
     return fallback;
   }
@@ -94,17 +130,87 @@ std::optional<std::pair<double, double>> read_load(
     return {};
   }
   if (values->size() != 2 || values->at(0) > values->at(1)) {
-    table.refuse(kPlantLoad, "it must be two numbers, the lightest and the heaviest load, or none");
+    table.refuse(setting, "it must be two numbers, the lightest and the heaviest load, or none");
   }
   return std::pair(values->at(0), values->at(1));
+}
+
+const std::vector<const AnySetting*>& list_own_settings() {
+  static const std::vector<const AnySetting*> settings = {&kPlantLoad, &kPlantViscousFriction,
+                                                          &kPlantCoulombFriction};
+  return settings;
+}
+
+const std::vector<const AnySetting*>& list_share_settings() {
+  static const std::vector<const AnySetting*> settings = {&kPlantLoadShare, &kPlantViscousShare,
+                                                          &kPlantCoulombShare};
+  return settings;
+}
+
+// Returns the settings that are not for this robot.
+std::vector<const AnySetting*> list_unused(const ConfigTable& table, const std::string& robot) {
+  const auto robots = table.find(kPlantRobots);
+  if (!robots || robots->empty()) {
+    return {};
+  }
+  return std::ranges::find(*robots, robot) == robots->end() ? list_own_settings()
+                                                            : list_share_settings();
 }
 
 std::string get_place(Perturbation::Where where) {
   return kPlantApplyTo.choices()[static_cast<std::size_t>(where)];
 }
 
+// Sets the loads and frictions in `p` that are for this robot.
+void read_sizes(const ConfigTable& table, const PerturbedRobot& robot, Perturbation& p) {
+  const std::vector<const AnySetting*> unused = list_unused(table, robot.model.name);
+  const auto is_used = [&](const AnySetting& setting) {
+    table.has(setting);  // known, whether it is used or not
+    return std::ranges::find(unused, &setting) == unused.end();
+  };
+  const std::size_t joints = robot.model.joint_count();
+  if (is_used(kPlantLoad)) {
+    p.load_kg = read_interval(table, kPlantLoad, p.load_kg);
+  }
+  if (is_used(kPlantViscousFriction)) {
+    p.viscous_friction_n_m_s_per_rad =
+        read_joints(table, kPlantViscousFriction, joints, p.viscous_friction_n_m_s_per_rad);
+  }
+  if (is_used(kPlantCoulombFriction)) {
+    p.coulomb_friction_n_m =
+        read_joints(table, kPlantCoulombFriction, joints, p.coulomb_friction_n_m);
+  }
+  if (is_used(kPlantLoadShare)) {
+    p.load_share = read_interval(table, kPlantLoadShare, p.load_share);
+  }
+  if (is_used(kPlantViscousShare)) {
+    p.viscous_friction_share = table.get_or(kPlantViscousShare, p.viscous_friction_share);
+  }
+  if (is_used(kPlantCoulombShare)) {
+    p.coulomb_friction_share = table.get_or(kPlantCoulombShare, p.coulomb_friction_share);
+  }
+  const bool has_kg = is_used(kPlantLoad) && table.has(kPlantLoad);
+  const bool has_share = is_used(kPlantLoadShare) && table.has(kPlantLoadShare);
+  if (has_kg && has_share && p.load_kg && p.load_share) {
+    table.refuse(kPlantLoadShare, "load_kg is given, too; give one of the two");
+  }
+  if (has_kg && !has_share) {
+    p.load_share.reset();  // it was that of the preset
+  }
+  if (p.load_share) {
+    const double mass_kg = calc_moving_mass_kg(robot.model);
+    p.load_kg = {p.load_share->first * mass_kg, p.load_share->second * mass_kg};
+  }
+  p.efforts.clear();
+  if (p.viscous_friction_share > 0 || p.coulomb_friction_share > 0) {
+    for (const JointDrive& joint : robot.start.joints) {
+      p.efforts.push_back(std::max(std::abs(joint.limits.min), std::abs(joint.limits.max)));
+    }
+  }
+}
+
 // Returns `p` with the values of the keys that are there.
-Perturbation read_keys(const ConfigTable& table, std::size_t joints, Perturbation p) {
+Perturbation read_keys(const ConfigTable& table, const PerturbedRobot& robot, Perturbation p) {
   using Where = Perturbation::Where;
   constexpr std::string_view kSetPrefix = "plant/";
   p.set = table.get_or(kPlantSet, p.set);
@@ -116,11 +222,7 @@ Perturbation read_keys(const ConfigTable& table, std::size_t joints, Perturbatio
             : where == "judging" ? Where::judging
                                  : Where::everywhere;
   p.mass_relative = table.get_or(kPlantMass, p.mass_relative);
-  p.load_kg = read_load(table, p.load_kg);
-  p.viscous_friction_n_m_s_per_rad =
-      read_joints(table, kPlantViscousFriction, joints, p.viscous_friction_n_m_s_per_rad);
-  p.coulomb_friction_n_m =
-      read_joints(table, kPlantCoulombFriction, joints, p.coulomb_friction_n_m);
+  read_sizes(table, robot, p);
   p.friction_transition_rad_per_s =
       table.get_or(kPlantFrictionTransition, p.friction_transition_rad_per_s);
   p.quantisation_rad = table.get_or(kPlantQuantisation, p.quantisation_rad);
@@ -132,11 +234,14 @@ Perturbation read_keys(const ConfigTable& table, std::size_t joints, Perturbatio
   p.ripple_cycles_per_turn = table.get_or(kPlantRippleCycles, p.ripple_cycles_per_turn);
   p.effort_limit_sigma = table.get_or(kPlantEffortSigma, p.effort_limit_sigma);
   p.gain_sigma = table.get_or(kPlantGainSigma, p.gain_sigma);
+  p.friction_relative = table.get_or(kPlantFriction, p.friction_relative);
+  p.armature_relative = table.get_or(kPlantArmature, p.armature_relative);
+  p.stiffness_relative = table.get_or(kPlantStiffness, p.stiffness_relative);
   return p;
 }
 
-Perturbation load_preset(const ConfigTable& preset, std::size_t joints) {
-  Perturbation perturbation = read_keys(preset, joints, {});
+Perturbation load_preset(const ConfigTable& preset, const PerturbedRobot& robot) {
+  Perturbation perturbation = read_keys(preset, robot, {});
   preset.refuse_unknown();
   return perturbation;
 }
@@ -152,31 +257,44 @@ std::string write_list(const std::vector<double>& values) {
 }  // namespace
 
 const SettingTable kPerturbationSettings{
-    .key = "perturbation",
-    .settings = {&kPlantPreset, &kPlantSet, &kPlantApplyTo, &kPlantMass, &kPlantLoad,
-                 &kPlantViscousFriction, &kPlantCoulombFriction, &kPlantFrictionTransition,
-                 &kPlantQuantisation, &kPlantDelay, &kPlantRipple, &kPlantRippleCycles,
-                 &kPlantEffortSigma, &kPlantGainSigma}};
+    .key = "perturbation", .settings = {&kPlantPreset,          &kPlantSet,
+                                        &kPlantApplyTo,         &kPlantMass,
+                                        &kPlantRobots,          &kPlantLoad,
+                                        &kPlantLoadShare,       &kPlantViscousFriction,
+                                        &kPlantCoulombFriction, &kPlantFrictionTransition,
+                                        &kPlantViscousShare,    &kPlantCoulombShare,
+                                        &kPlantFriction,        &kPlantArmature,
+                                        &kPlantStiffness,       &kPlantQuantisation,
+                                        &kPlantDelay,           &kPlantRipple,
+                                        &kPlantRippleCycles,    &kPlantEffortSigma,
+                                        &kPlantGainSigma}};
 
-Perturbation load_perturbation(const std::string& preset, std::size_t joints) {
+Perturbation load_perturbation(const std::string& preset, const PerturbedRobot& robot) {
   const auto file = resolve_config("perturbations", preset);
-  return load_preset(ConfigTable::load(kPerturbationSettings, file), joints);
+  return load_preset(ConfigTable::load(kPerturbationSettings, file), robot);
 }
 
 std::vector<std::string> make_overrides(const Perturbation& p) {
-  std::vector<double> load_kg;
-  if (p.load_kg) {
-    load_kg = {p.load_kg->first, p.load_kg->second};
-  }
+  const auto write_interval = [](const Interval& interval) {
+    return write_list(interval ? std::vector{interval->first, interval->second}
+                               : std::vector<double>());
+  };
   const std::pair<const AnySetting*, std::string> values[] = {
       {&kPlantPreset, "\"\""},
       {&kPlantSet, p.set},
       {&kPlantApplyTo, get_place(p.where)},
       {&kPlantMass, format_exact(p.mass_relative)},
-      {&kPlantLoad, write_list(load_kg)},
+      {&kPlantRobots, "[]"},
+      {&kPlantLoad, write_interval(p.load_share ? Interval() : p.load_kg)},
+      {&kPlantLoadShare, write_interval(p.load_share)},
       {&kPlantViscousFriction, write_list(p.viscous_friction_n_m_s_per_rad)},
       {&kPlantCoulombFriction, write_list(p.coulomb_friction_n_m)},
       {&kPlantFrictionTransition, format_exact(p.friction_transition_rad_per_s)},
+      {&kPlantViscousShare, format_exact(p.viscous_friction_share)},
+      {&kPlantCoulombShare, format_exact(p.coulomb_friction_share)},
+      {&kPlantFriction, format_exact(p.friction_relative)},
+      {&kPlantArmature, format_exact(p.armature_relative)},
+      {&kPlantStiffness, format_exact(p.stiffness_relative)},
       {&kPlantQuantisation, format_exact(p.quantisation_rad)},
       {&kPlantDelay, format_exact(p.delay_s)},
       {&kPlantRipple, format_exact(p.torque_ripple_relative)},
@@ -190,18 +308,26 @@ std::vector<std::string> make_overrides(const Perturbation& p) {
   return overrides;
 }
 
-Perturbation read_perturbation(const ConfigTable& table, std::size_t joints,
+Perturbation read_perturbation(const ConfigTable& table, const PerturbedRobot& robot,
                                LoadedProblem& loaded) {
   Perturbation perturbation;
   if (!table.get(kPlantPreset).empty()) {
     const auto file = resolve_named(table, kPlantPreset, "perturbations");
     const ConfigTable preset = ConfigTable::load(kPerturbationSettings, file);
-    perturbation = load_preset(preset, joints);
+    perturbation = load_preset(preset, robot);
     table.settle(kPlantPreset, "");
     table.settle_missing(preset);
+    // The record holds what counts for this robot.
+    std::vector<const AnySetting*> left_out = list_unused(preset, robot.model.name);
+    left_out.push_back(&kPlantRobots);
+    for (const AnySetting* setting : left_out) {
+      if (!table.has(*setting)) {
+        table.leave_out(*setting);
+      }
+    }
     add_input(loaded, file);
   }
-  return read_keys(table, joints, perturbation);
+  return read_keys(table, robot, perturbation);
 }
 
 }  // namespace armwright

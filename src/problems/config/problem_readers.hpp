@@ -210,16 +210,25 @@ void read_variables(const ConfigTable& variables, const ConfigTable& control,
 //
 // preset = NAME names a file with the same keys: a shipped one in configs/perturbations, or a path.
 // Keys beside it replace the keys of the preset. An empty list stands for none; of load_kg it
-// stands for the task's own load.
+// stands for the task's own load. A file with `robots` has loads in kg and numbers per joint for
+// the robots of these names, and shares for all others.
 
 extern const SettingTable kPerturbationSettings;
 
+// The robot that a perturbation is for, and the design that optimizations start from: shares are
+// shares of its masses and of its effort limits. Refers to both.
+struct PerturbedRobot {
+  const RobotModel& model;
+  const ArmDesign& start;
+};
+
 // Reads a preset by itself: the name of a shipped file, or a path.
-Perturbation load_perturbation(const std::string& preset, std::size_t joints);
+Perturbation load_perturbation(const std::string& preset, const PerturbedRobot& robot);
 // Returns all keys as KEY=VALUE texts, which replace every key of a problem's table.
 std::vector<std::string> make_overrides(const Perturbation& perturbation);
 // Settles the values of a preset, and no preset. Records the preset's file as an input of `loaded`.
-Perturbation read_perturbation(const ConfigTable& table, std::size_t joints, LoadedProblem& loaded);
+Perturbation read_perturbation(const ConfigTable& table, const PerturbedRobot& robot,
+                               LoadedProblem& loaded);
 
 // requirement_reader.cpp: [[requirement]] (requirement.hpp)
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+
 #include "base/error.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "problems/tracking/tracking_config.hpp"
@@ -17,7 +19,7 @@ const Setting<bool> kTaskCountFirstPoint{
     "count_first_point", TrackingTask{}.count_first_point,
     "whether the first move, which starts from rest, counts (default: false; with a [path] true)"};
 const Setting<double> kTaskSpeed{"speed_m_per_s",
-                                 {.lower = 0.01, .upper = 100},
+                                 {.lower = 1e-4, .upper = 100},
                                  TrackingTask{}.speed_m_per_s,
                                  "nominal speed of the target"};
 const Setting<double> kTaskDistanceLimit{
@@ -72,7 +74,19 @@ const Setting<double> kTaskRest{
 const Setting<bool> kTaskIkBug{"ik_bug", TrackingTask{}.ik_bug,
                                "whether to repeat the thesis's error in its inverse kinematics"};
 const Setting<double> kTaskLoad{
-    "load_kg", {.lower = 0, .upper = 1000}, TrackingTask{}.load_kg, "mass at the tool"};
+    "load_kg", {.lower = 0, .upper = 1000}, TrackingTask{}.load_kg, "mass of the load"};
+const Setting<std::vector<double>> kTaskLoadCom{
+    "load_com_m",
+    {.lower = -100, .upper = 100},
+    kNoDefault,
+    "the load's centre of mass in the tip's frame, three numbers (default: the load is a steel "
+    "block on the flange)"};
+const Setting<std::vector<double>> kTaskLoadInertia{
+    "load_inertia_kg_m2",
+    {.lower = -1e6, .upper = 1e6},
+    kNoDefault,
+    "the load's inertia about its centre of mass in the tip's axes: ixx, iyy, izz, ixy, ixz and "
+    "iyz; needs load_com_m (default: a point mass)"};
 const Setting<std::string> kTaskKinematics{
     "kinematics", kinematics_names, "auto",
     "inverse kinematics; auto: the closed form if the arm is a palletiser, else numeric"};
@@ -117,14 +131,52 @@ ToolTask read_tool(const ConfigTable& table) {
   return tool;
 }
 
+// Returns the load's shape of the user's own, if the table has one.
+std::optional<LoadBody> read_load_body(const ConfigTable& table, double load_kg) {
+  const auto inertia = table.find(kTaskLoadInertia);
+  if (!table.has(kTaskLoadCom)) {
+    if (inertia) {
+      table.refuse(kTaskLoadInertia, "it needs task.load_com_m, the load's centre of mass");
+    }
+    return std::nullopt;
+  }
+  LoadBody body;
+  body.com_m = read_vector(table, kTaskLoadCom, "x, y and z in m, in the tip's frame");
+  if (!inertia) {
+    return body;
+  }
+  const std::vector<double>& i = *inertia;
+  if (i.size() != 6) {
+    table.refuse(kTaskLoadInertia, "it must be six numbers: ixx, iyy, izz, ixy, ixz and iyz");
+  }
+  if (load_kg == 0) {
+    table.refuse(kTaskLoadInertia, "it needs task.load_kg > 0, the mass that it belongs to");
+  }
+  Eigen::Matrix3d tensor;
+  tensor << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
+  const Eigen::Vector3d moments =  // ascending
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
+  // The eigenvalues of a rod or a disc have rounding errors.
+  const double rounding = 1e-12 * tensor.norm();
+  if (moments[0] < -rounding || moments[2] > moments[0] + moments[1] + rounding) {
+    table.refuse(
+        kTaskLoadInertia,
+        fmt::format("no body has its principal moments {:.6g}, {:.6g} and {:.6g}: none may "
+                    "be negative, and the largest must not exceed the sum of the others",
+                    moments[0], moments[1], moments[2]));
+  }
+  body.inertia_m2 = tensor / load_kg;
+  return body;
+}
+
 }  // namespace
 
 const SettingTable kTaskSettings{
     .key = "task",
     .settings = {&kTaskSignal, &kTaskSpeed, &kTaskDistanceLimit, &kTaskTrapezoidAcceleration,
-                 &kTaskRest, &kTaskCountFirstPoint, &kTaskIkBug, &kTaskLoad, &kTaskKinematics,
-                 &kTaskSolver, &kTaskLimits, &kTaskOrientation, &kTaskToolRpy, &kTaskToolAxis,
-                 &kTaskOrientationArm, &kTaskHome}};
+                 &kTaskRest, &kTaskCountFirstPoint, &kTaskIkBug, &kTaskLoad, &kTaskLoadCom,
+                 &kTaskLoadInertia, &kTaskKinematics, &kTaskSolver, &kTaskLimits, &kTaskOrientation,
+                 &kTaskToolRpy, &kTaskToolAxis, &kTaskOrientationArm, &kTaskHome}};
 const SettingTable kControlSettings{.key = "control",
                                     .settings = {&kControlPeriod, &kControlController}};
 const SettingTable kWorkspaceSettings{
@@ -160,6 +212,7 @@ TrackingTask read_task(const ConfigTable& table, const ConfigTable& control) {
   task.count_first_point = table.get(kTaskCountFirstPoint);
   task.ik_bug = table.get(kTaskIkBug);
   task.load_kg = table.get(kTaskLoad);
+  task.load_body = read_load_body(table, task.load_kg);
   task.kinematics = static_cast<KinematicsChoice>(table.get_choice(kTaskKinematics));
   task.solver = static_cast<NumericSolver>(table.get_choice(kTaskSolver));
   task.limits = static_cast<LimitPolicy>(table.get_choice(kTaskLimits));

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
+#include "problems/config/plant_file.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "sim/robot/mesh_file.hpp"
 #include "sim/tracking/elasticity.hpp"
@@ -35,6 +38,36 @@ const Setting<double> kRobotMassScale{"mass_scale",
                                       {.lower = 0.01, .upper = 100},
                                       TrackingConfig{}.mass_scale,
                                       "factor on every mass and inertia of the robot"};
+const Setting<bool> kRobotDynamics{
+    "dynamics", RobotOptions{}.dynamics,
+    "whether joints have the friction of <dynamics> in the URDF, and a proposed start its effort "
+    "limits (the problem robot, which --robot uses, has true)"};
+const Setting<std::string> kRobotPlant{
+    "plant", "",
+    "file with rotor inertia, friction, elasticity and counterbalances of the joints; auto: "
+    "FILE.plant.toml beside the robot FILE.urdf, if it exists (the problem robot has auto)"};
+constexpr Range kPlantFactor{.lower = 0.01, .upper = 100};
+const Setting<double> kRobotFrictionScale{"friction_scale",
+                                          {.lower = 0, .upper = 100},
+                                          PlantScales{}.friction,
+                                          "factor on all friction of the robot's joints"};
+const Setting<double> kRobotArmatureScale{"armature_scale", kPlantFactor, PlantScales{}.armature,
+                                          "factor on the armatures of the robot's joints"};
+const Setting<double> kRobotStiffnessScale{
+    "stiffness_scale", kPlantFactor, PlantScales{}.stiffness,
+    "factor on the stiffness and damping of the robot's elastic joints"};
+const Setting<double> kRobotArmatureShare{
+    "armature_share",
+    {.lower = 0, .upper = 10},
+    PlantScales{}.armature_share,
+    "joints without armature get this share of the inertia that they move in the middle of the "
+    "ranges"};
+const Setting<double> kRobotElastic{
+    "elastic_hz",
+    {.lower = 0, .upper = 1000},
+    PlantScales{}.elastic_hz,
+    "rigid joints become elastic: on a held link, their motors swing at this frequency; needs "
+    "armatures; 0: they stay rigid"};
 const Setting<bool> kRobotPropose{
     "propose", false,
     "whether values that the file leaves out of workspace, pace and controllers are proposed from "
@@ -51,6 +84,26 @@ const Setting<double> kMotorsTorquePerMass{
     {.lower = 0, .upper = 1e9},
     TrackingConfig{}.torque_per_mass_n_m_per_kg,
     "every joint carries a motor with the mass effort limit / this; 0: motors have no mass"};
+
+// Reads the changes of the plants and applies them to the robot.
+void scale_plants_of(const ConfigTable& table, TrackingConfig& config) {
+  config.plant_scales = {.friction = table.get(kRobotFrictionScale),
+                         .armature = table.get(kRobotArmatureScale),
+                         .stiffness = table.get(kRobotStiffnessScale),
+                         .armature_share = table.get(kRobotArmatureShare),
+                         .elastic_hz = table.get(kRobotElastic)};
+  if (config.plant_scales == PlantScales{}) {
+    return;
+  }
+  config.robot = scale_plants(std::move(config.robot), config.plant_scales);
+  if (config.plant_scales.elastic_hz > 0 &&
+      std::ranges::none_of(config.robot.joints,
+                           [](const Joint& joint) { return joint.plant.is_elastic(); })) {
+    table.refuse(kRobotElastic,
+                 "none of the robot's joints has an armature, which an elastic joint needs; give "
+                 "robot.armature_share, or armatures in the file of robot.plant");
+  }
+}
 
 std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
                                                      const ConfigTable& variables,
@@ -102,6 +155,19 @@ void read_path_and_proposal(const ConfigTable& table, TrackingConfig& config,
   }
 }
 
+// Returns the plant's file, and settles its name. Empty: there is none.
+std::filesystem::path find_plant(const ConfigTable& table, const std::filesystem::path& urdf) {
+  const std::string named = table.get(kRobotPlant);
+  if (named != kPlantBeside) {
+    return named.empty() ? "" : resolve_named(table, kRobotPlant, "robots");
+  }
+  const std::filesystem::path beside = name_plant_file(urdf);
+  const bool exists = path_exists(beside);
+  // A record is read where the URDF is found, so the name is that of the URDF.
+  table.settle(kRobotPlant, exists ? name_plant_file(table.get(kRobotUrdf)).string() : "");
+  return exists ? beside : "";
+}
+
 // Returns the robot that [robot] describes, with the masses of its file.
 RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urdf,
                       LoadedProblem& loaded) {
@@ -109,11 +175,17 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
   options.base = table.get(kRobotBase);
   options.tip = table.get(kRobotTip);
   options.density_kg_per_m3 = table.get(kRobotDensity);
+  options.dynamics = table.get(kRobotDynamics);
+  const std::filesystem::path plant = find_plant(table, urdf);
   try {
     RobotModel robot = load_urdf(urdf, options);
     add_input(loaded, urdf);
     for (const auto& [name, path] : robot.mass_files) {
       loaded.input_hashes[name] = calc_sha256_hex(read_file(path, kMeshFileLimit_bytes));
+    }
+    if (!plant.empty()) {
+      load_plant(plant, robot);
+      add_input(loaded, plant);
     }
     return robot;
   } catch (const RobotOptionError& error) {
@@ -123,9 +195,11 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
 
 }  // namespace
 
-const SettingTable kRobotSettings{.key = "robot",
-                                  .settings = {&kRobotUrdf, &kRobotBase, &kRobotTip, &kRobotDensity,
-                                               &kRobotMassScale, &kRobotPropose}};
+const SettingTable kRobotSettings{
+    .key = "robot",
+    .settings = {&kRobotUrdf, &kRobotBase, &kRobotTip, &kRobotDensity, &kRobotMassScale,
+                 &kRobotDynamics, &kRobotPlant, &kRobotFrictionScale, &kRobotArmatureScale,
+                 &kRobotStiffnessScale, &kRobotArmatureShare, &kRobotElastic, &kRobotPropose}};
 const SettingTable kTrainingSettings{.key = "training", .settings = {&kTrainingCutoff}};
 const SettingTable kMotorSettings{.key = "motors", .settings = {&kMotorsTorquePerMass}};
 
@@ -149,6 +223,8 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   const auto urdf = resolve_named(robot, kRobotUrdf, "robots");
   config.mass_scale = robot.get(kRobotMassScale);
   config.robot = scale_masses(load_robot(robot, urdf, loaded), config.mass_scale);
+  scale_plants_of(robot, config);
+  config.own_effort_limits = robot.get(kRobotDynamics);
 
   const ConfigTable physics = table.get_table_or_empty(kPhysicsSettings);
   config.engines = read_engines(physics, engines);
@@ -172,7 +248,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   config.torque_per_mass_n_m_per_kg =
       table.get_table_or_empty(kMotorSettings).get(kMotorsTorquePerMass);
   config.perturbation = read_perturbation(table.get_table_or_empty(kPerturbationSettings),
-                                          config.robot.joint_count(), loaded);
+                                          {config.robot, config.start}, loaded);
   check_limits(table.get_table_or_empty(kObjectiveSettings), config);
   config.requirements = read_requirements(table.get_tables_or_empty(kRequirementSettings), config);
   loaded.problem = make_tracking(std::move(config), variables, urdf);

@@ -32,10 +32,22 @@ bool Perturbation::changes_loop() const {
          quantisation_rad > 0 || delay_s > 0 || torque_ripple_relative > 0;
 }
 
+bool Perturbation::changes_joints() const {
+  return viscous_friction_share > 0 || coulomb_friction_share > 0 || friction_relative > 0 ||
+         armature_relative > 0 || stiffness_relative > 0;
+}
+
 RobotModel Plant::make_arm(RobotModel nominal) const {
   for (std::size_t i = 0; i < nominal.links.size(); ++i) {
     nominal.links[i].inertial.mass_kg *= mass_factors[i];
     nominal.links[i].inertial.inertia_kg_m2 *= mass_factors[i];
+    JointPlant& plant = nominal.joints[i].plant;
+    scale_friction(plant, friction_factors[i]);
+    plant.viscous += viscous[i];
+    plant.coulomb += coulomb[i];
+    plant.armature *= armature_factors[i];
+    plant.stiffness *= stiffness_factors[i];
+    plant.damping *= stiffness_factors[i];
   }
   return nominal;
 }
@@ -64,7 +76,13 @@ std::size_t Plant::size_bytes() const {
   // An estimate that is rather too large. In each form of the arm, a joint has about fifty numbers,
   // a name and its factors.
   constexpr std::size_t kJoint_bytes = 4096;
-  return sizeof *this + mass_factors.size() * kJoint_bytes;
+  std::size_t size = sizeof *this + mass_factors.size() * kJoint_bytes;
+  if (setup) {
+    for (const Joint& joint : setup->robot().joints) {
+      size += 4 * sizeof(double) * joint.plant.counterbalance.efforts.size();
+    }
+  }
+  return size;
 }
 
 Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double substep_s,
@@ -77,9 +95,14 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
   PlantVariation variation;
   for (std::size_t i = 0; i < joints; ++i) {
     plant.mass_factors.push_back(1 + p.mass_relative * (2 * random.uniform() - 1));
+    const double viscous_share = random.uniform();
+    const double coulomb_share = random.uniform();
+    const double effort = get_size(p.efforts, i);
     variation.viscous_friction.push_back(get_size(p.viscous_friction_n_m_s_per_rad, i) *
-                                         random.uniform());
-    variation.coulomb_friction.push_back(get_size(p.coulomb_friction_n_m, i) * random.uniform());
+                                         viscous_share);
+    variation.coulomb_friction.push_back(get_size(p.coulomb_friction_n_m, i) * coulomb_share);
+    plant.viscous.push_back(p.viscous_friction_share * effort * viscous_share);
+    plant.coulomb.push_back(p.coulomb_friction_share * effort * coulomb_share);
     variation.torque_ripple.push_back(p.torque_ripple_relative * random.uniform());
     variation.ripple_phase_rad.push_back(2 * std::numbers::pi * random.uniform());
   }
@@ -92,6 +115,12 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
     for (std::size_t k = 0; k < Plant::kMostGains; ++k) {
       factors.push_back(std::exp(p.gain_sigma * random.normal()));
     }
+  }
+  // Version 1.0 ended here, so these come after all others.
+  for (std::size_t i = 0; i < joints; ++i) {
+    plant.friction_factors.push_back(1 + p.friction_relative * (2 * random.uniform() - 1));
+    plant.armature_factors.push_back(1 + p.armature_relative * (2 * random.uniform() - 1));
+    plant.stiffness_factors.push_back(1 + p.stiffness_relative * (2 * random.uniform() - 1));
   }
   if (p.load_kg) {
     const auto [lower, upper] = *p.load_kg;

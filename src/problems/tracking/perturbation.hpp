@@ -7,6 +7,12 @@
 //   mass_relative x        each moving link's mass and inertia tensor times 1 + x (2 U - 1)
 //   load_kg [l, u]         the load is l + (u - l) U and replaces the task's
 //   viscous, coulomb       of each joint b = B U, c = C U (sim/tracking/plant_variation.hpp)
+//   friction shares        the same U: the joint's plant (sim/robot/joint_plant.hpp) gets viscous
+//                          friction share x effort x U more, and Coulomb friction likewise. The
+//                          effort is the larger effort limit of the problem's start
+//   friction_relative x    the joint's friction in the plant (d, c, s_t and o) times 1 + x (2 U - 1)
+//   armature_relative x    the joint's armature times 1 + x (2 U - 1)
+//   stiffness_relative x   the joint's stiffness and damping times 1 + x (2 U - 1)
 //   quantisation_rad       the same in every plant
 //   delay_s d              d U, rounded to whole substeps of the physics
 //   torque_ripple r        of each joint a = r U, its phase 2 pi U
@@ -39,9 +45,17 @@ struct Perturbation {
   Where where = Where::everywhere;
   double mass_relative = 0;
   std::optional<std::pair<double, double>> load_kg;  // nothing: the task's load
+  // The lightest and heaviest load as shares of the mass of the moving links. The reader makes
+  // load_kg of it. Nothing: load_kg is given, or nothing.
+  std::optional<std::pair<double, double>> load_share;
   // One number per joint; empty: no friction.
   std::vector<double> viscous_friction_n_m_s_per_rad, coulomb_friction_n_m;
   double friction_transition_rad_per_s = 0.05;
+  // Largest viscous friction (at 1 rad/s or 1 m/s) and Coulomb friction as shares of the effort.
+  double viscous_friction_share = 0, coulomb_friction_share = 0;
+  std::vector<double> efforts;  // N m or N, one per joint; the reader sets them for the shares
+  // Spreads around the plant's own values.
+  double friction_relative = 0, armature_relative = 0, stiffness_relative = 0;
   double quantisation_rad = 0;
   double delay_s = 0;
   double torque_ripple_relative = 0;
@@ -52,8 +66,9 @@ struct Perturbation {
   bool operator==(const Perturbation&) const = default;
   // Returns true if cases of that role have perturbed plants.
   bool applies_to(CaseRole role) const;
-  bool changes_arm() const { return mass_relative > 0 || load_kg; }  // masses or load
-  bool changes_loop() const;                                         // a part of PlantVariation
+  bool changes_arm() const { return mass_relative > 0 || load_kg || changes_joints(); }
+  bool changes_joints() const;  // a part of JointPlant
+  bool changes_loop() const;    // a part of PlantVariation
   bool changes_design() const { return effort_limit_sigma > 0 || gain_sigma > 0; }
   bool changes_anything() const { return changes_arm() || changes_loop() || changes_design(); }
 };
@@ -64,6 +79,8 @@ struct Plant {
   std::optional<double> load_kg;                  // nothing: the task's load
   std::vector<double> limit_factors;              // one per joint
   std::vector<std::vector<double>> gain_factors;  // kMostGains per joint
+  std::vector<double> viscous, coulomb;           // added friction, one number per joint
+  std::vector<double> friction_factors, armature_factors, stiffness_factors;  // one per joint
   std::optional<PlantVariation> variation;
   // The problem's own arm and task with this plant's masses and load. Nothing if both are nominal.
   // TrackingInputs sets it.
@@ -71,7 +88,7 @@ struct Plant {
 
   static constexpr std::size_t kMostGains = 16;  // per joint
 
-  // Returns the arm with this plant's masses; neither arm has its load.
+  // Returns the arm with this plant's masses and joints; neither arm has its load.
   RobotModel make_arm(RobotModel nominal) const;
   // Returns the task with this plant's load.
   TrackingTask make_task(TrackingTask nominal) const;

@@ -50,6 +50,7 @@ struct TrackingConfig {
   std::string summary;
   RobotModel robot;
   double mass_scale = 1;  // the factor that all masses were multiplied by when the robot was loaded
+  PlantScales plant_scales;  // likewise, of the robot's joints
   TrackingTask task;
   WorkspaceSphere workspace;
   std::optional<TestCase> path;  // replaces the cases that are generated in the workspace

@@ -27,6 +27,16 @@ std::string format_mm(const std::optional<double>& metres) {
 
 // ---- Robot, task, optimization -----------------------------------------------------------------
 
+std::string describe_load(const TrackingTask& task) {
+  const std::string mass = fmt::format("{:.5g} kg", task.load_kg);
+  if (task.load_kg == 0 || !task.load_body) {
+    return mass;
+  }
+  const Eigen::Vector3d& com_m = task.load_body->com_m;
+  return fmt::format("{}, centre of mass at {:.4g}, {:.4g}, {:.4g} m in the tip's frame", mass,
+                     com_m.x(), com_m.y(), com_m.z());
+}
+
 std::string make_robot_facts(const FinishedArm& arm) {
   const TrackingConfig& config = arm.config();
   const RobotModel robot = arm.run.tracking()->make_robot(arm.design);
@@ -38,7 +48,7 @@ std::string make_robot_facts(const FinishedArm& arm) {
        fmt::format("{} \u2192 {}", sanitize(robot.base.name), sanitize(robot.links.back().name))},
       {"Joints", fmt::format("{}: {} turn, {} slide", robot.joint_count(), turning, sliding)},
       {"Moving mass", fmt::format("{:.5g} kg", calc_moving_mass_kg(robot))},
-      {"Load", fmt::format("{:.5g} kg", config.task.load_kg)},
+      {"Load", describe_load(config.task)},
       {"Links", is_stretched(arm.design) ? "other than the URDF's (see winner.toml)" : ""},
       {"URDF", sanitize(arm.run.find_urdf().filename().string())}};
   return make_fact_list(facts);

@@ -133,8 +133,8 @@ json make_shapes(const std::vector<VisualShape>& visuals, Meshes& meshes) {
 
 }  // namespace
 
-json make_robot(const RobotModel& model, double load_kg, const std::filesystem::path& urdf_folder,
-                std::vector<std::string>& notes) {
+json make_robot(const RobotModel& model, const TrackingTask& task,
+                const std::filesystem::path& urdf_folder, std::vector<std::string>& notes) {
   const auto link = [&](std::size_t body) -> const Link& {
     return body == 0 ? model.base : model.links[body - 1];
   };
@@ -161,8 +161,8 @@ json make_robot(const RobotModel& model, double load_kg, const std::filesystem::
     }
     bodies.push_back({{"name", link(body).name}, {"shapes", std::move(shapes)}});
   }
-  const RobotModel loaded = add_load(model, load_kg);
-  if (load_kg > 0) {
+  const RobotModel loaded = add_load(model, task.load_kg, task.load_body);
+  if (task.load_kg > 0) {
     VisualShape load = loaded.links.back().visuals.back();
     load.rgba = kLoadColour;
     bodies.back()["shapes"].push_back(make_shape(load, std::nullopt));
@@ -178,11 +178,11 @@ json make_robot(const RobotModel& model, double load_kg, const std::filesystem::
           {"meshes", meshes.take()}};
 }
 
-std::size_t add_robot(const RobotModel& model, double load_kg,
+std::size_t add_robot(const RobotModel& model, const TrackingTask& task,
                       const std::filesystem::path& urdf_folder, json& robots,
                       std::vector<std::string>& notes) {
   std::vector<std::string> its_notes;
-  json robot = make_robot(model, load_kg, urdf_folder, its_notes);
+  json robot = make_robot(model, task, urdf_folder, its_notes);
   const auto known = std::ranges::find(robots, robot);
   if (known != robots.end()) {
     return static_cast<std::size_t>(known - robots.begin());

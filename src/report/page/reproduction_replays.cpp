@@ -51,13 +51,13 @@ class Robots {
   Robots(json& list, std::vector<std::string>& notes) : list_(list), notes_(notes) {}
 
   std::size_t find(const LoadedProblem& problem) {
-    const double load_kg = problem.tracking()->config().task.load_kg;
+    const TrackingConfig& config = problem.tracking()->config();
     const auto urdf = json::parse(problem.resolved_json).at("robot").at("urdf").get<std::string>();
-    const auto key = fmt::format("{} {}", urdf, load_kg);
+    const auto key = fmt::format("{} {}", urdf, config.task.load_kg);
     const auto known = std::ranges::find(keys_, key);
     if (known == keys_.end()) {
       keys_.push_back(key);
-      list_.push_back(make_robot(problem.tracking()->config().robot, load_kg,
+      list_.push_back(make_robot(config.robot, config.task,
                                  resolve_config("robots", urdf).parent_path(), notes_));
       return keys_.size() - 1;
     }

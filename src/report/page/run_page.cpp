@@ -139,7 +139,7 @@ void add_arm(const RecordedRun& run, const PageOptions& options, PageSimulator* 
     const auto groups = divide_by_motion(problem, named);
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const std::size_t robot =
-          add_robot(make_shown_arm(problem, groups[g].front()), problem.config().task.load_kg,
+          add_robot(make_shown_arm(problem, groups[g].front()), problem.config().task,
                     run.find_urdf().parent_path(), page["robots"], notes);
       page["replays"].push_back(make_replay_set(*simulator, problem,
                                                 make_group_text({"run", "Motions"}, groups, g),

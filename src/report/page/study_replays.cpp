@@ -159,9 +159,8 @@ json make_study_replays(const StudyPlan& plan, const StudyResult& result,
     const auto folder_of_meshes = find_urdf_folder(problem);
     for (std::size_t g = 0; g < groups.size(); ++g) {
       const auto& group = groups[g];
-      const std::size_t robot =
-          add_robot(make_shown_arm(tracking, group.front()), tracking.config().task.load_kg,
-                    folder_of_meshes, robots, notes);
+      const std::size_t robot = add_robot(make_shown_arm(tracking, group.front()),
+                                          tracking.config().task, folder_of_meshes, robots, notes);
       simulator.expect(group.size() * requests.size());
       json replay = make_replay_set(
           simulator, tracking,

@@ -56,4 +56,11 @@ struct JointPlant {
   }
 };
 
+// Multiplies all friction of a joint, also its offset.
+inline void scale_friction(JointPlant& plant, double factor) {
+  for (double* part : {&plant.viscous, &plant.coulomb, &plant.stribeck, &plant.offset}) {
+    *part *= factor;
+  }
+}
+
 }  // namespace armwright

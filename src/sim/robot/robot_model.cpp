@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
@@ -16,6 +17,63 @@ namespace {
 // Steiner's term: the inertia of a point mass at `r` from the reference point.
 Eigen::Matrix3d calc_point_inertia(double mass_kg, const Eigen::Vector3d& r) {
   return mass_kg * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+}
+
+// The thesis's load.
+constexpr double kBlockEdge_m = 0.16825;
+constexpr double kBlockThickness_m = 0.09;
+// The size of a load of the user's own in pictures is that of a steel ball.
+constexpr double kSteel_kg_per_m3 = 7850;
+
+// Returns the direction of the block on the flange.
+Eigen::Vector3d find_load_direction(const RobotModel& model) {
+  const Eigen::Vector3d tip = model.tip_pose.translation();
+  return tip.norm() == 0 ? model.joints.back().axis : Eigen::Vector3d(tip.normalized());
+}
+
+Inertial make_block(double mass_kg, const Eigen::Vector3d& tip, const Eigen::Vector3d& direction) {
+  Inertial block;
+  block.mass_kg = mass_kg;
+  block.com_m = tip + kBlockThickness_m / 2 * direction;
+  const double across =
+      mass_kg / 12 * (kBlockEdge_m * kBlockEdge_m + kBlockThickness_m * kBlockThickness_m);
+  const double along = mass_kg / 12 * (2 * kBlockEdge_m * kBlockEdge_m);
+  block.inertia_kg_m2 =
+      across * Eigen::Matrix3d::Identity() +
+      (along - across) * (direction * direction.transpose());  // the base is square
+  return block;
+}
+
+// Returns the inertia (kg m^2 or kg) that each joint moves at joint positions `q` if the others are
+// held: the diagonal of the mass matrix, without armatures.
+std::vector<double> calc_moved_inertias(const RobotModel& model, const std::vector<double>& q) {
+  std::vector<double> inertias(model.joint_count());
+  Inertial beyond;  // everything that the joint moves, in the frame of its link
+  for (std::size_t i = model.joint_count(); i-- > 0;) {
+    const Joint& joint = model.joints[i];
+    beyond = combine(model.links[i].inertial, beyond);
+    Eigen::Isometry3d pose = joint.origin;
+    if (joint.kind == JointKind::prismatic) {
+      inertias[i] = beyond.mass_kg;
+      pose.translate(q[i] * joint.axis);
+    } else {
+      const double lever_m = joint.axis.cross(beyond.com_m).norm();
+      inertias[i] =
+          joint.axis.dot(beyond.inertia_kg_m2 * joint.axis) + beyond.mass_kg * lever_m * lever_m;
+      pose.rotate(Eigen::AngleAxisd(q[i], joint.axis));
+    }
+    beyond = transform(beyond, pose);
+  }
+  return inertias;
+}
+
+std::vector<double> list_middles(const RobotModel& model) {
+  std::vector<double> middles;
+  for (const Joint& joint : model.joints) {
+    const double middle = (joint.lower + joint.upper) / 2;
+    middles.push_back(std::isfinite(middle) ? middle : 0);
+  }
+  return middles;
 }
 
 }  // namespace
@@ -54,9 +112,7 @@ RobotModel parse_urdf(std::string_view xml, const std::string& name, const Robot
   return build_model(check_urdf(xml, name, options), name, options);
 }
 
-RobotModel add_load(RobotModel model, double mass_kg) {
-  constexpr double kEdge_m = 0.16825;
-  constexpr double kThickness_m = 0.09;
+RobotModel add_load(RobotModel model, double mass_kg, const std::optional<LoadBody>& body) {
   if (!std::isfinite(mass_kg) || mass_kg < 0) {
     throw Error(ErrorKind::usage,
                 fmt::format("the load is {} kg; it must be finite and >= 0", mass_kg));
@@ -64,36 +120,25 @@ RobotModel add_load(RobotModel model, double mass_kg) {
   if (mass_kg == 0) {
     return model;
   }
-  const Eigen::Vector3d tip = model.tip_pose.translation();
-  if (model.links.empty() || tip.norm() == 0) {
-    throw Error(
-        ErrorKind::bad_data,
-        fmt::format(
-            "robot '{}' cannot carry a load: its tip is the origin of its last link, so the "
-            "flange has no direction; add a link without mass on a fixed joint at the tip",
-            sanitize(model.name)));
-  }
-  const Eigen::Vector3d direction = tip.normalized();
-
-  Inertial block;
-  block.mass_kg = mass_kg;
-  block.com_m = tip + kThickness_m / 2 * direction;
-  const double across = mass_kg / 12 * (kEdge_m * kEdge_m + kThickness_m * kThickness_m);
-  const double along = mass_kg / 12 * (2 * kEdge_m * kEdge_m);
-  block.inertia_kg_m2 =
-      across * Eigen::Matrix3d::Identity() +
-      (along - across) * (direction * direction.transpose());  // the base is square
-
+  Inertial load;
   VisualShape shape;
-  shape.kind = ShapeKind::box;
-  shape.size_m = Eigen::Vector3d(kEdge_m, kEdge_m, kThickness_m);
-  shape.pose.translation() = block.com_m;
-  shape.pose.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction).toRotationMatrix();
+  if (body) {
+    load = transform({mass_kg, body->com_m, mass_kg * body->inertia_m2}, model.tip_pose);
+    shape.kind = ShapeKind::sphere;
+    shape.size_m.x() = std::cbrt(3 * mass_kg / (4 * std::numbers::pi * kSteel_kg_per_m3));
+    shape.pose.translation() = load.com_m;
+  } else {
+    const Eigen::Vector3d direction = find_load_direction(model);
+    load = make_block(mass_kg, model.tip_pose.translation(), direction);
+    shape.kind = ShapeKind::box;
+    shape.size_m = Eigen::Vector3d(kBlockEdge_m, kBlockEdge_m, kBlockThickness_m);
+    shape.pose.translation() = load.com_m;
+    shape.pose.linear() =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction).toRotationMatrix();
+  }
   shape.rgba = Eigen::Vector4d(0.45, 0.47, 0.50, 1.0);
-
   Link& last = model.links.back();
-  last.inertial = combine(last.inertial, block);
+  last.inertial = combine(last.inertial, load);
   last.visuals.push_back(shape);
   return model;
 }
@@ -110,6 +155,26 @@ RobotModel scale_masses(RobotModel model, double factor) {
   for (Link& link : model.links) {
     link.inertial.mass_kg *= factor;
     link.inertial.inertia_kg_m2 *= factor;
+  }
+  return model;
+}
+
+RobotModel scale_plants(RobotModel model, const PlantScales& scales) {
+  constexpr double kDampingRatio = 0.05;
+  const std::vector<double> inertias = calc_moved_inertias(model, list_middles(model));
+  for (std::size_t i = 0; i < model.joint_count(); ++i) {
+    JointPlant& plant = model.joints[i].plant;
+    scale_friction(plant, scales.friction);
+    plant.armature =
+        plant.armature > 0 ? scales.armature * plant.armature : scales.armature_share * inertias[i];
+    if (plant.is_elastic()) {
+      plant.stiffness *= scales.stiffness;
+      plant.damping *= scales.stiffness;
+    } else if (scales.elastic_hz > 0) {
+      const double rate = 2 * std::numbers::pi * scales.elastic_hz;  // rad/s
+      plant.stiffness = rate * rate * plant.armature;
+      plant.damping = 2 * kDampingRatio * rate * plant.armature;
+    }
   }
   return model;
 }

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -82,6 +83,8 @@ struct RobotModel {
   // frame. At most four (make_tool_points() of sim/kinematics/tool_task.hpp). Empty: the tool
   // centre point is measured.
   std::vector<Eigen::Vector3d> tool_points_m;
+  // The names of the joints that could move and are held, because they are not on the chain.
+  std::vector<std::string> held_joints;
   // Notes for the user, one line each, safe to print on a terminal. They name the parts of the file
   // that simulations ignore and the assumptions that the reader made.
   std::vector<std::string> notes;
@@ -98,6 +101,9 @@ struct RobotOptions {
   std::string base = {};         // the chain's first link; empty: the root
   std::string tip = {};          // the chain's last link; empty: the only leaf below the base
   double density_kg_per_m3 = 0;  // density of moving links without <inertial>; 0: no mass
+  // Whether the chain's joints have the viscous and Coulomb friction of their <dynamics>. If not,
+  // they have none, as in version 1.0, and a note says so.
+  bool dynamics = false;
 };
 
 // An Error{usage}: a member of RobotOptions does not fit the file. The message begins with the
@@ -127,8 +133,8 @@ class RobotOptionError final : public Error {
 // `base` become part of the fixed base. The world's frame is the root link's frame. The tip's frame
 // is the tool centre point.
 //
-// The reader uses the inertial and visual elements and the joints' origins, axes and limits. An
-// effort or velocity limit of 0 is a placeholder and means no limit. If `options.density_kg_per_m3`
+// The reader uses the inertial and visual elements and the joints' origins, axes and limits, and
+// with `options.dynamics` their friction (joint_plant.hpp: damping is d, friction is c). An effort or velocity limit of 0 is a placeholder and means no limit. If `options.density_kg_per_m3`
 // is positive, each moving link without <inertial> gets the mass properties of its visual shapes
 // (shape_mass.hpp). RobotModel::notes names these assumptions and all parts that are ignored
 // (docs/robots.md).
@@ -156,15 +162,40 @@ RobotModel load_urdf(const std::filesystem::path& file, const RobotOptions& opti
 RobotModel parse_urdf(std::string_view xml, const std::string& name,
                       const RobotOptions& options = {});
 
-// Returns the robot with a steel block on its flange. The block is a box of 0.16825 x 0.16825 x
-// 0.09 m (the thesis's load, section 6.4). Its short side points along the last link and its centre
-// lies 45 mm beyond the tip. `mass_kg` changes the density, not the shape. Throws Error{usage} if
-// the mass is not finite or is negative, Error{bad_data} if the tip lies in the last joint, because
-// then the last link has no direction.
-RobotModel add_load(RobotModel model, double mass_kg);
+// A load of the user's own, in the frame of the tip and for each kg of its mass.
+struct LoadBody {
+  Eigen::Vector3d com_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d inertia_m2 =
+      Eigen::Matrix3d::Zero();  // inertia / mass, about the centre of mass, in the tip's axes
+
+  bool operator==(const LoadBody&) const = default;
+};
+
+// Returns the robot with a load on its last link: `body`, or else a steel block on the flange. The
+// block is a box of 0.16825 x 0.16825 x 0.09 m (the thesis's load, section 6.4). Its short side
+// points along the last link, and its centre lies 45 mm beyond the tip. If the tip is the origin of
+// the last link, the block points along the last joint's axis. `mass_kg` changes the density, not
+// the shape. Throws Error{usage} if the mass is not finite or is negative.
+RobotModel add_load(RobotModel model, double mass_kg, const std::optional<LoadBody>& body = {});
 
 // Returns the robot with the mass and inertia of each moving link multiplied by `factor`, as if its
 // density were changed. Throws Error{usage} if the factor is not finite and positive.
 RobotModel scale_masses(RobotModel model, double factor);
+
+// Changes of all joints' plants. The default changes nothing.
+struct PlantScales {
+  double friction = 1;   // factor on all friction, also on the offset
+  double armature = 1;   // factor on armatures
+  double stiffness = 1;  // factor on the stiffness and damping of elastic joints
+  // A joint without armature gets this share of the inertia that it moves while the others are held
+  // at the middles of their ranges (at 0 if they have none).
+  double armature_share = 0;
+  // A rigid joint with armature A becomes elastic: on a held link, its motor swings at this
+  // frequency f, k = (2 pi f)^2 A, with a twentieth of the critical damping. 0: it stays rigid.
+  double elastic_hz = 0;
+
+  bool operator==(const PlantScales&) const = default;
+};
+RobotModel scale_plants(RobotModel model, const PlantScales& scales);
 
 }  // namespace armwright

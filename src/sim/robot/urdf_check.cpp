@@ -202,7 +202,7 @@ CheckedUrdf check_urdf(std::string_view xml_text, const std::string& name,
        e = e->NextSiblingElement("link")) {
     checked.bodies.push_back(links.read(*e, checked.links[checked.bodies.size()].name));
   }
-  JointChecker joints(checked.chain, xml);
+  JointChecker joints(checked.chain, options.dynamics, xml);
   for (const XMLElement* e = robot.FirstChildElement("joint"); e != nullptr;
        e = e->NextSiblingElement("joint")) {
     checked.placements.push_back(joints.read(*e, checked.joints[checked.placements.size()]));

@@ -72,7 +72,10 @@ Joint JointChecker::read_motion(const XMLElement& element, const UrdfJoint& join
   motion.kind = joint.type == "prismatic" ? JointKind::prismatic : JointKind::revolute;
   motion.axis = read_axis(element).normalized();
   read_limit(element, joint, motion);
-  note_extras(element, joint);
+  read_dynamics(element, joint, motion);
+  if (xml_.find_only(element, "safety_controller") != nullptr) {
+    softly_limited_.push_back(fmt::format("'{}'", joint.name));
+  }
   return motion;
 }
 
@@ -156,11 +159,7 @@ void JointChecker::read_limit(const XMLElement& element, const UrdfJoint& joint,
   }
 }
 
-// Notes elements that would change the joint's motion but are not simulated.
-void JointChecker::note_extras(const XMLElement& element, const UrdfJoint& joint) {
-  if (xml_.find_only(element, "safety_controller") != nullptr) {
-    softly_limited_.push_back(fmt::format("'{}'", joint.name));
-  }
+void JointChecker::read_dynamics(const XMLElement& element, const UrdfJoint& joint, Joint& motion) {
   const XMLElement* dynamics = xml_.find_only(element, "dynamics");
   if (dynamics == nullptr) {
     return;
@@ -175,8 +174,12 @@ void JointChecker::note_extras(const XMLElement& element, const UrdfJoint& joint
     if (value != 0) {
       parts.push_back(fmt::format("{} {}", attribute, value));
     }
+    if (dynamics_) {
+      (std::string_view(attribute) == "damping" ? motion.plant.viscous : motion.plant.coulomb) =
+          value;
+    }
   }
-  if (!parts.empty()) {
+  if (!dynamics_ && !parts.empty()) {
     rubbing_.push_back(fmt::format("'{}' ({})", joint.name, join(parts, ", ")));
   }
 }
@@ -185,8 +188,8 @@ std::vector<std::string> JointChecker::make_notes() const {
   std::vector<std::string> notes;
   if (!rubbing_.empty()) {
     notes.push_back(fmt::format(
-        "joints are simulated without the <dynamics> of {}; [perturbation] can add friction: "
-        "viscous_friction_n_m_s_per_rad, coulomb_friction_n_m (docs/robust.md)",
+        "joints are simulated without the <dynamics> of {}; robot.dynamics = true gives them this "
+        "friction",
         join(rubbing_, ", ")));
   }
   for (const auto& [attribute, joints] : without_limit_) {

@@ -90,10 +90,12 @@ class LinkChecker {
   std::vector<std::string> massless_;
 };
 
-// A reader of <joint> elements: their origins, axes and limits.
+// A reader of <joint> elements: their origins, axes, limits and friction.
 class JointChecker {
  public:
-  JointChecker(const UrdfChain& chain, UrdfXml& xml) : chain_(chain), xml_(xml) {}
+  // `dynamics`: as RobotOptions::dynamics.
+  JointChecker(const UrdfChain& chain, bool dynamics, UrdfXml& xml)
+      : chain_(chain), dynamics_(dynamics), xml_(xml) {}
 
   UrdfPlacement read(const tinyxml2::XMLElement& element, const UrdfJoint& joint);
   std::vector<std::string> make_notes() const;
@@ -104,9 +106,10 @@ class JointChecker {
             UrdfPlacement& placement) const;
   Eigen::Vector3d read_axis(const tinyxml2::XMLElement& element) const;
   void read_limit(const tinyxml2::XMLElement& element, const UrdfJoint& joint, Joint& motion);
-  void note_extras(const tinyxml2::XMLElement& element, const UrdfJoint& joint);
+  void read_dynamics(const tinyxml2::XMLElement& element, const UrdfJoint& joint, Joint& motion);
 
   const UrdfChain& chain_;
+  bool dynamics_;
   UrdfXml& xml_;
   std::vector<std::string> rubbing_, softly_limited_;              // joints, in the file's order
   std::map<std::string, std::vector<std::string>> without_limit_;  // by attribute of <limit>

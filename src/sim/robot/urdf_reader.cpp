@@ -44,6 +44,7 @@ class Builder {
     model_.notes = checked_.notes;
     std::ranges::sort(held_, {}, &Held::joint);  // in the order of the file
     for (const Held& held : held_) {
+      model_.held_joints.push_back(checked_.joints[held.joint].name);
       model_.notes.push_back(describe(held));
     }
     for (std::string& note : mass_notes_) {

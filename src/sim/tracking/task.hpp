@@ -2,6 +2,7 @@
 // holds everything that is the same for every design and every test case.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "sim/kinematics/numeric_kinematics.hpp"
 #include "sim/kinematics/targets.hpp"
 #include "sim/kinematics/tool_task.hpp"
+#include "sim/robot/robot_model.hpp"
 
 namespace armwright {
 
@@ -46,6 +48,7 @@ struct TrackingTask {
   bool count_first_point = false;
   bool ik_bug = false;
   double load_kg = 0;
+  std::optional<LoadBody> load_body;  // nothing: the load is a steel block (add_load())
   KinematicsChoice kinematics = KinematicsChoice::automatic;
   NumericSolver solver = NumericSolver::lanes;
   LimitPolicy limits = LimitPolicy::ignore;

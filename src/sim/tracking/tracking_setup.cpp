@@ -80,7 +80,7 @@ const std::vector<std::string>& limit_policy_names() {
 }
 
 TrackingSetup::TrackingSetup(const RobotModel& robot, const TrackingTask& task)
-    : robot_(task.load_kg > 0 ? add_load(robot, task.load_kg) : robot),
+    : robot_(task.load_kg > 0 ? add_load(robot, task.load_kg, task.load_body) : robot),
       task_(task),
       tool_points_m_(make_tool_points(task.tool)) {
   const bool may_have_closed_form = task.kinematics != KinematicsChoice::numeric &&

@@ -146,8 +146,44 @@ TEST(VerifyConclusion, NamesPerturbedPlants) {
                                  make_summary({0.002})));
   }
   EXPECT_EQ(conclude("mine", rows),
-            "mine holds in 1 of the 2 settings beside its own. Perturbed plants: It holds with "
+            "mine holds in 1 of the 2 settings beside its own. Other plants: It holds with "
             "friction. It gets worse with sensor (median 2.00 times as large).");
+}
+
+TEST(VerifyConclusion, NamesWhatCouldNotBeSimulated) {
+  std::vector<VerifyRow> rows;
+  const VerifyMatrix matrix{{"a"}, {1}, {"none"}, {"friction", "elastic"}};
+  for (const VerifySetting& setting : list_verify_settings({"a", 1, 1}, matrix)) {
+    rows.push_back(setting.perturbation == "elastic"
+                       ? make_missing_row(setting, "no armature")
+                       : judge_setting(setting, make_summary({0.002}), make_summary({0.002})));
+  }
+  EXPECT_STREQ(to_string(rows.back().verdict), "not simulated");
+  EXPECT_EQ(conclude("mine", rows),
+            "mine holds in 1 of the 2 settings beside its own. Other plants: It holds with "
+            "friction. It could not be simulated with elastic.");
+}
+
+TEST(OtherPlants, SuitWhatTheRobotHas) {
+  RobotModel robot;
+  robot.joints.resize(2);
+  const auto list_suiting = [&] {
+    std::vector<std::string> names;
+    for (const OtherPlant& plant : other_plants()) {
+      if (plant.suits(robot)) {
+        names.push_back(plant.name);
+      }
+    }
+    return names;
+  };
+  EXPECT_THAT(list_suiting(), testing::ElementsAre("added-rotors", "elastic-rotors"));
+  robot.joints[1].plant.coulomb = 1;
+  robot.joints[0].plant.armature = 1;
+  EXPECT_THAT(list_suiting(),
+              testing::ElementsAre("more-friction", "lighter-rotors", "heavier-rotors", "elastic"));
+  robot.joints[0].plant.stiffness = 1;
+  EXPECT_THAT(list_suiting(),
+              testing::ElementsAre("more-friction", "lighter-rotors", "heavier-rotors", "softer"));
 }
 
 TEST(VerifyConclusion, SaysWhenThereIsNothingToHold) {

@@ -15,8 +15,9 @@ constexpr const char* kTopKeys =
     "workspace, path, objective, training, variables, motors, perturbation, requirement, sweep";
 constexpr const char* kTaskKeys =
     "signal, speed_m_per_s, distance_limit_m, trapezoid_acceleration_m_per_s2, rest_s, "
-    "count_first_point, ik_bug, load_kg, kinematics, solver, limits, orientation, tool_rpy_rad, "
-    "tool_axis, "
+    "count_first_point, ik_bug, load_kg, load_inertia_kg_m2, load_com_m, kinematics, solver, "
+    "limits, "
+    "orientation, tool_rpy_rad, tool_axis, "
     "orientation_arm_m, home";
 
 struct Mistake {
@@ -42,11 +43,11 @@ const std::vector<Mistake> kTask = {
      "3: task.signal is 5, an integer; it must be one of these strings: step, ramp, trapezoid, "
      "triangular, complex"},
     {"[task]\nspeed_m_per_s = 0",
-     "3: task.speed_m_per_s is 0; it must be a finite number >= 0.01 and <= 100"},
+     "3: task.speed_m_per_s is 0; it must be a finite number >= 0.0001 and <= 100"},
     {"[task]\nspeed_m_per_s = 100.5",
-     "3: task.speed_m_per_s is 100.5; it must be a finite number >= 0.01 and <= 100"},
+     "3: task.speed_m_per_s is 100.5; it must be a finite number >= 0.0001 and <= 100"},
     {"[task]\n\n\nspeed_m_per_s = 'fast'",
-     "5: task.speed_m_per_s is 'fast', a string; it must be a finite number >= 0.01 and <= 100"},
+     "5: task.speed_m_per_s is 'fast', a string; it must be a finite number >= 0.0001 and <= 100"},
     {"[task]\nspeed_m_per_s = nan", "3: task.speed_m_per_s is nan; it must be a finite number"},
     {"[task]\nspeed_m_per_s = -inf", "3: task.speed_m_per_s is -inf; it must be a finite number"},
     {"[task]\nspeed = 2",
@@ -65,6 +66,24 @@ const std::vector<Mistake> kTask = {
     {"[task]\nik_bug = 'yes'", "3: task.ik_bug is 'yes', a string; it must be true or false"},
     {"[task]\nload_kg = -20",
      "3: task.load_kg is -20; it must be a finite number >= 0 and <= 1000"},
+    {"[task]\nload_kg = 2\nload_com_m = [0, 0]",
+     "4: task.load_com_m is [0, 0]; it must be three numbers: x, y and z in m, in the tip's frame"},
+    {"[task]\nload_kg = 2\nload_inertia_kg_m2 = [1, 1, 1, 0, 0, 0]",
+     "4: task.load_inertia_kg_m2 is [1, 1, 1, 0, 0, 0]; it needs task.load_com_m, the load's "
+     "centre "
+     "of mass"},
+    {"[task]\nload_kg = 2\nload_com_m = [0, 0, 0]\nload_inertia_kg_m2 = [1, 1, 3, 0, 0, 0]",
+     "5: task.load_inertia_kg_m2 is [1, 1, 3, 0, 0, 0]; no body has its principal moments 1, 1 and "
+     "3: none may be negative, and the largest must not exceed the sum of the others"},
+    {"[task]\nload_kg = 2\nload_com_m = [0, 0, 0]\nload_inertia_kg_m2 = [1, 1, 1]",
+     "5: task.load_inertia_kg_m2 is [1, 1, 1]; it must be six numbers: ixx, iyy, izz, ixy, ixz and "
+     "iyz"},
+    {"[task]\nload_com_m = [0, 0, 0]\nload_inertia_kg_m2 = [1, 1, 1, 0, 0, 0]",
+     "4: task.load_inertia_kg_m2 is [1, 1, 1, 0, 0, 0]; it needs task.load_kg > 0, the mass that "
+     "it belongs to"},
+    {"[robot]\nurdf = 'irb4600_40_255'\nelastic_hz = 5",
+     "4: robot.elastic_hz is 5; none of the robot's joints has an armature, which an elastic joint "
+     "needs; give robot.armature_share, or armatures in the file of robot.plant"},
     {"task = 3", "2: task is 3, an integer; it must be a table, [task]"},
     // Each allowed for itself, but together 1e8 periods and more.
     {"[task]\nspeed_m_per_s = 0.01\n[control]\nperiod_s = 1e-5",
@@ -290,7 +309,8 @@ TEST(BadConfig, EveryUnknownKeyIsNamedAtOnce) {
                 "here: " +
                 kTaskKeys +
                 "\np.toml:7: unknown key robot.url. Valid here: urdf, mass_scale, base, "
-                "tip, density_kg_per_m3, propose");
+                "tip, density_kg_per_m3, dynamics, plant, friction_scale, armature_scale, "
+                "stiffness_scale, armature_share, elastic_hz, propose");
 }
 
 TEST(BadConfig, WhatIsMissingIsNamed) {
@@ -363,13 +383,13 @@ TEST(BadConfig, OverridesAreNamedAsSuch) {
            "--set tsk.speed_m_per_s=2: unknown key tsk; did you mean 'task'? Valid here: ") +
            kTopKeys},
       {"task.speed_m_per_s=0",
-       "--set task.speed_m_per_s=0: task.speed_m_per_s is 0; it must be a finite number >= 0.01 "
+       "--set task.speed_m_per_s=0: task.speed_m_per_s is 0; it must be a finite number >= 0.0001 "
        "and <= 100"},
       {"task.speed_m_per_s=inf",
        "--set task.speed_m_per_s=inf: task.speed_m_per_s is inf; it must be a finite number"},
       {"task.speed_m_per_s=fast",
        "--set task.speed_m_per_s=fast: task.speed_m_per_s is fast, a string; it must be a finite "
-       "number >= 0.01 and <= 100"},
+       "number >= 0.0001 and <= 100"},
       {"task.speed_m_per_s",
        "--set task.speed_m_per_s: there is no '=' in it; write KEY=VALUE, as in --set "
        "task.speed_m_per_s=2"},

@@ -137,7 +137,7 @@ TEST(BadExtends, MistakeInTheExtendedFileIsNamedThere) {
   const ProblemFolder folder;
   folder.write("q.toml", "extends = \"base\"\n[task]\nspeed_m_per_s = 0\n");
   EXPECT_EQ(folder.refusal_of("extends = \"q\"\n[task]\nload_kg = 1\n"),
-            "q.toml:3: task.speed_m_per_s is 0; it must be a finite number >= 0.01 and <= 100");
+            "q.toml:3: task.speed_m_per_s is 0; it must be a finite number >= 0.0001 and <= 100");
 }
 
 TEST(BadRobot, FileIsNamedWithItsLine) {

@@ -237,7 +237,7 @@ TEST(Settings, EveryOneHasAMeaning) {
 TEST(Settings, SayWhatTheReadersCheck) {
   const AnySetting& speed = find(problem_settings(), "task.speed_m_per_s");
   EXPECT_EQ(speed.unit, "m/s");
-  EXPECT_EQ(speed.describe_allowed(), "a finite number >= 0.01 and <= 100");
+  EXPECT_EQ(speed.describe_allowed(), "a finite number >= 0.0001 and <= 100");
   EXPECT_EQ(speed.default_text, "1.5");
   EXPECT_EQ(find(problem_settings(), "schedule.kind").describe_allowed(),
             "one of these strings: fixed, fresh, coevolution");

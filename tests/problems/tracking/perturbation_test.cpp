@@ -54,7 +54,20 @@ TEST(DrawnPlant, IsAFunctionOfTheNamesAndTheNumber) {
 }
 
 TEST(DrawnPlant, KindsDoNotShiftEachOther) {
-  const Plant all = draw(make_everything(), "train/1", 3);
+  Perturbation everything = make_everything();
+  everything.friction_relative = 0.5;
+  everything.armature_relative = 0.4;
+  everything.stiffness_relative = 0.3;
+  everything.viscous_friction_share = 0.1;
+  everything.efforts = {10, 20, 30, 40};
+  const Plant all = draw(everything, "train/1", 3);
+  const Plant of_version_1 = draw(make_everything(), "train/1", 3);
+  EXPECT_EQ(all.gain_factors, of_version_1.gain_factors);
+  EXPECT_EQ(all.variation->ripple_phase_rad, of_version_1.variation->ripple_phase_rad);
+  EXPECT_THAT(of_version_1.friction_factors, ElementsAre(1, 1, 1, 1));
+  Perturbation armatures;
+  armatures.armature_relative = 0.4;
+  EXPECT_EQ(draw(armatures, "train/1", 3).armature_factors, all.armature_factors);
   Perturbation masses;
   masses.mass_relative = 0.1;
   EXPECT_EQ(draw(masses, "train/1", 3).mass_factors, all.mass_factors);
@@ -126,6 +139,46 @@ TEST(DrawnPlant, ChangesLinkByLink) {
     EXPECT_EQ(after.com_m, before.com_m);
   }
   EXPECT_EQ(std::set(plant.mass_factors.begin(), plant.mass_factors.end()).size(), 4U);
+}
+
+TEST(DrawnPlant, VariesAroundThePlantsOwnValues) {
+  RobotModel nominal = load_urdf(ARMWRIGHT_CONFIGS "/robots/irb4600_40_255.urdf");
+  for (std::size_t i = 0; i < 4; ++i) {
+    JointPlant& own = nominal.joints[i].plant;
+    own.armature = 2;
+    own.viscous = 3;
+    own.coulomb = 5;
+    own.offset = -7;
+    own.stiffness = 11;
+  }
+  Perturbation p;
+  p.friction_relative = 0.5;
+  p.armature_relative = 0.4;
+  p.stiffness_relative = 0.3;
+  p.coulomb_friction_share = 0.1;
+  p.efforts = {10, 20, 30, 40};
+  std::set<double> factors;
+  for (std::uint64_t number = 0; number < 100; ++number) {
+    const Plant plant = draw(p, "train/1", number);
+    const RobotModel arm = plant.make_arm(nominal);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const JointPlant& joint = arm.joints[i].plant;
+      const double friction = plant.friction_factors[i];
+      EXPECT_GE(friction, 0.5);
+      EXPECT_LE(friction, 1.5);
+      EXPECT_GE(joint.armature, 2 * 0.6);
+      EXPECT_LE(joint.armature, 2 * 1.4);
+      EXPECT_GE(joint.stiffness, 11 * 0.7);
+      EXPECT_LE(joint.stiffness, 11 * 1.3);
+      EXPECT_EQ(joint.viscous, 3 * friction);
+      EXPECT_EQ(joint.offset, -7 * friction);
+      EXPECT_GE(joint.coulomb - 5 * friction, 0);
+      EXPECT_LE(joint.coulomb - 5 * friction, 0.1 * p.efforts[i]);
+      factors.insert({friction, joint.armature, joint.stiffness});
+    }
+    EXPECT_FALSE(plant.variation);
+  }
+  EXPECT_EQ(factors.size(), 3U * 4 * 100);
 }
 
 TEST(DrawnPlant, ChangesGainsAndLimitsOfEveryJoint) {
@@ -293,11 +346,47 @@ TEST(PerturbationTable, ShippedPresetsAreRead) {
   }
 }
 
+// The numbers per joint are for the thesis's arm, as in version 1.0; other arms get shares.
+TEST(PerturbationTable, ShippedPresetsSuitEveryRobot) {
+  const std::vector<std::string> all = {"perturbation.preset=all"};
+  const LoadedProblem thesis = load_problem("q1-complex", all);
+  const Perturbation& own = thesis.tracking()->config().perturbation;
+  EXPECT_THAT(own.viscous_friction_n_m_s_per_rad, ElementsAre(60, 120, 40, 0.5));
+  EXPECT_THAT(own.coulomb_friction_n_m, ElementsAre(100, 200, 60, 0.2));
+  EXPECT_EQ(own.load_kg, std::pair(0.0, 40.0));
+  EXPECT_EQ(own.coulomb_friction_share, 0);
+  EXPECT_THAT(thesis.resolved_json, Not(HasSubstr("share")));
+  EXPECT_THAT(thesis.resolved_json, Not(HasSubstr("robots")));
+  for (const std::string name : {"arm7", "planar2", "irb4600_six"}) {
+    const std::vector<std::string> overrides = {"perturbation.preset=all", "robot.urdf=" + name};
+    const LoadedProblem loaded = load_problem("robot", overrides);
+    const TrackingConfig& config = loaded.tracking()->config();
+    const Perturbation& p = config.perturbation;
+    EXPECT_TRUE(p.viscous_friction_n_m_s_per_rad.empty());
+    EXPECT_EQ(p.coulomb_friction_share, 0.02);
+    ASSERT_EQ(p.efforts.size(), config.robot.joint_count());
+    for (std::size_t i = 0; i < p.efforts.size(); ++i) {
+      EXPECT_EQ(p.efforts[i], config.start.joints[i].limits.max);
+    }
+    double mass_kg = 0;
+    for (const Link& link : config.robot.links) {
+      mass_kg += link.inertial.mass_kg;
+    }
+    EXPECT_NEAR(p.load_kg->second, 0.1 * mass_kg, 1e-12 * mass_kg);
+    EXPECT_THAT(loaded.resolved_json, Not(HasSubstr("load_kg")));
+    const LoadedProblem again = load_recorded_problem(loaded.resolved_json, loaded.name, "");
+    EXPECT_EQ(again.tracking()->config().perturbation, p);
+    EXPECT_EQ(again.resolved_json, loaded.resolved_json);
+  }
+}
+
 // Every key of a preset survives being written as overrides and read back.
 TEST(PerturbationTable, OverridesSayEverything) {
   for (const std::string& name : list_configs("perturbations")) {
     SCOPED_TRACE(name);
-    const Perturbation p = load_perturbation(name, 4);
+    const LoadedProblem thesis = load_problem("q1-complex");
+    const TrackingConfig& config = thesis.tracking()->config();
+    const Perturbation p = load_perturbation(name, {config.robot, config.start});
     std::vector<std::string> overrides = {"perturbation.preset=all", "perturbation.gain_sigma=1"};
     const auto keys = make_overrides(p);
     overrides.insert(overrides.end(), keys.begin(), keys.end());
@@ -318,6 +407,10 @@ TEST(PerturbationTable, MistakesAreNamed) {
   EXPECT_THAT(refusal_of("load_kg = [40, 0]"),
               HasSubstr("p.toml:3: perturbation.load_kg is [40, 0]; it must be two numbers"));
   EXPECT_THAT(refusal_of("load_kg = [-1, 0]"), HasSubstr("perturbation.load_kg"));
+  EXPECT_THAT(refusal_of("load_kg = [0, 4]\nload_share = [0, 0.1]"),
+              HasSubstr("p.toml:4: perturbation.load_share is [0, 0.1]; load_kg is given, too"));
+  EXPECT_THAT(refusal_of("friction_relative = 0.95"),
+              HasSubstr("friction_relative is 0.95; it must be a finite number >= 0 and <= 0.9"));
   EXPECT_THAT(refusal_of("coulomb_friction_n_m = [1, 2]"),
               HasSubstr("p.toml:3: perturbation.coulomb_friction_n_m is [1, 2]; it must hold 4 "
                         "numbers, one a joint, or none"));

@@ -43,8 +43,9 @@ std::string make_problem(const std::string& script, const std::string& objective
          objective;
 }
 
-Evaluation evaluate(const LoadedProblem& loaded, std::vector<double> x,
-                    std::vector<std::uint64_t> cases = {0}, CaseRole role = CaseRole::training) {
+Evaluation evaluate_command(const LoadedProblem& loaded, std::vector<double> x,
+                            std::vector<std::uint64_t> cases = {0},
+                            CaseRole role = CaseRole::training) {
   return loaded.problem->evaluate(x, {role, "train/1", std::move(cases)});
 }
 
@@ -52,7 +53,7 @@ Evaluation run(const std::string& script, const std::string& objective,
                const std::string& more = "", std::vector<double> x = {0.25, 3, 1}) {
   const ProblemFolder folder;
   folder.write("p.toml", make_problem(script, objective, more));
-  return evaluate(folder.load("p.toml"), std::move(x));
+  return evaluate_command(folder.load("p.toml"), std::move(x));
 }
 
 TEST(CommandProblem, ValuesGoIntoPlacesAndResultsComeOutOfFiles) {
@@ -111,7 +112,7 @@ TEST(CommandProblem, ADeathWithTheStopOfTheRunIsNoFailedCase) {
       }
     });
     const StopScope scope(&stop);
-    EXPECT_THROW(evaluate(loaded, {0, 0, 0}), WorkStopped) << end;
+    EXPECT_THROW(evaluate_command(loaded, {0, 0, 0}), WorkStopped) << end;
   }
 }
 
@@ -120,7 +121,7 @@ TEST(CommandProblem, AValueNeverAddsAWord) {
   std::string text = make_problem("echo $#\n", "regex = '([0-9]+)'\n");
   text = change_text(text, "[command]", "run", "\"sh script {kind} '{n} {kind}'\"");
   folder.write("p.toml", text);
-  EXPECT_THAT(evaluate(folder.load("p.toml"), {0, 3, 1}).objectives, ElementsAre(2));
+  EXPECT_THAT(evaluate_command(folder.load("p.toml"), {0, 3, 1}).objectives, ElementsAre(2));
 }
 
 TEST(CommandProblem, PlacesTellTheCaseAndItsSeed) {
@@ -129,7 +130,7 @@ TEST(CommandProblem, PlacesTellTheCaseAndItsSeed) {
                                       "regex = '(1)'\n", "") +
                              "[cases]\ntraining = 0\n");
   const LoadedProblem loaded = folder.load("p.toml");
-  evaluate(loaded, {0, 0, 0}, {4, 7});
+  evaluate_command(loaded, {0, 0, 0}, {4, 7});
   const auto read = [&](const std::string& name) {
     std::ifstream file(folder.path(name));
     std::string role;
@@ -180,7 +181,7 @@ TEST(CommandProblem, AWarningHasWhatTheCommandWroteAndTheRecordedReasonHasNot) {
   const std::string reason =
       "the command left no result: the match of 'f = (.*)' in its standard output is not a finite "
       "number";
-  EXPECT_EQ(evaluate(loaded, {0.25, 0, 0}).reason, reason);
+  EXPECT_EQ(evaluate_command(loaded, {0.25, 0, 0}).reason, reason);
   const auto told = find_warnings(*loaded.problem)->take();
   ASSERT_THAT(told, SizeIs(1));
   EXPECT_THAT(told.front(),
@@ -193,7 +194,7 @@ TEST(CommandProblem, ATimeLimitKillsWhatTheCommandStarted) {
       make_problem("sleep 1000 & echo $! > '{folder}/pid'; wait\n", "regex = '(.)'\n");
   text = change_text(text, "[command]", "time_limit_s", "3");
   folder.write("p.toml", text);
-  const Evaluation evaluation = evaluate(folder.load("p.toml"), {0, 0, 0});
+  const Evaluation evaluation = evaluate_command(folder.load("p.toml"), {0, 0, 0});
   EXPECT_EQ(evaluation.status, EvaluationStatus::timed_out);
   EXPECT_EQ(evaluation.reason, "the command has not ended within 3 s (command.time_limit_s)");
   std::string pid;
@@ -232,8 +233,8 @@ TEST(CommandProblem, WorkingFoldersAreRemovedOrKeptAsAsked) {
                  make_problem("echo made > made; exit {n}\n", "from = \"made\"\nregex = 'm(.)'\n",
                               "workspace = \"" + workspace + "\"\nkeep = \"" + keep + "\"\n"));
     // Both fail: one by its exit code, one because 'a' is no number.
-    evaluate(folder.load("p.toml"), {0, 0, 0});
-    evaluate(folder.load("p.toml"), {0, 1, 0});
+    evaluate_command(folder.load("p.toml"), {0, 0, 0});
+    evaluate_command(folder.load("p.toml"), {0, 1, 0});
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(workspace)) {
       names.push_back(entry.path().filename().string());
@@ -254,13 +255,13 @@ TEST(CommandProblem, ARecordIsReadWithoutItsTemplate) {
   text.replace(text.find("text = '''\n'''\n"), 15, "template = \"script.in\"\n");
   folder.write("p.toml", text);
   const LoadedProblem loaded = folder.load("p.toml");
-  EXPECT_THAT(evaluate(loaded, {0.5, 0, 0}).objectives, ElementsAre(0.5));
+  EXPECT_THAT(evaluate_command(loaded, {0.5, 0, 0}).objectives, ElementsAre(0.5));
   EXPECT_TRUE(loaded.input_hashes.contains("script.in"));
   EXPECT_EQ(loaded.program, "sh script");
   const LoadedProblem recorded = load_recorded_problem(loaded.resolved_json, "p", "/nowhere");
   EXPECT_EQ(recorded.resolved_json, loaded.resolved_json);
   EXPECT_EQ(recorded.input_hashes, loaded.input_hashes);
-  EXPECT_THROW(evaluate(recorded, {0.5, 0, 0}), Error) << "a record starts nothing";
+  EXPECT_THROW(evaluate_command(recorded, {0.5, 0, 0}), Error) << "a record starts nothing";
 }
 
 TEST(CommandProblem, BadFilesAreRefusedWithTheirLine) {

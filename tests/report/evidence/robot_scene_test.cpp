@@ -28,6 +28,12 @@ RobotModel load_arm() {
   return load_urdf(kRobots / "irb4600_40_255.urdf");
 }
 
+TrackingTask carry(double load_kg) {
+  TrackingTask task;
+  task.load_kg = load_kg;
+  return task;
+}
+
 void write_text(const std::filesystem::path& file, const std::string& content) {
   std::filesystem::create_directories(file.parent_path());
   std::ofstream(file, std::ios::binary) << content;
@@ -156,15 +162,15 @@ void expect_chain_of(const RobotModel& model, const json& robot) {
 
 TEST(RobotScene, MovesAsTheSimulatedArm) {
   std::vector<std::string> notes;
-  expect_chain_of(load_arm(), make_robot(load_arm(), 20, kRobots, notes));
+  expect_chain_of(load_arm(), make_robot(load_arm(), carry(20), kRobots, notes));
   const RobotModel bench = make_arm("", "");
-  expect_chain_of(bench, make_robot(bench, 0, kRobots, notes));
+  expect_chain_of(bench, make_robot(bench, {}, kRobots, notes));
 }
 
 TEST(RobotScene, HasTheShapesAndLimitsOfTheDescription) {
   std::vector<std::string> notes;
   const RobotModel arm = load_arm();
-  const json robot = make_robot(arm, 0, kRobots, notes);
+  const json robot = make_robot(arm, {}, kRobots, notes);
   EXPECT_THAT(notes, IsEmpty());
   EXPECT_EQ(robot["name"], "irb4600_40_255");
   ASSERT_EQ(robot["bodies"].size(), 5u);
@@ -182,7 +188,7 @@ TEST(RobotScene, HasTheShapesAndLimitsOfTheDescription) {
   EXPECT_TRUE(foot["mesh"].is_null());
   EXPECT_EQ(robot["joints"][1]["upper"], 2.6179938779914944);
 
-  const json bench = make_robot(make_arm("", ""), 0, kRobots, notes);
+  const json bench = make_robot(make_arm("", ""), {}, kRobots, notes);
   EXPECT_TRUE(bench["joints"][0]["upper"].is_null()) << "a continuous joint";
   EXPECT_EQ(bench["joints"][1]["kind"], "prismatic");
   EXPECT_EQ(bench["joints"][1]["lower"], -0.3);
@@ -192,7 +198,7 @@ TEST(RobotScene, CarriesTheLoadAsItIsSimulated) {
   std::vector<std::string> notes;
   const RobotModel arm = load_arm();
   const VisualShape block = add_load(arm, 20).links.back().visuals.back();
-  const json robot = make_robot(arm, 20, kRobots, notes);
+  const json robot = make_robot(arm, carry(20), kRobots, notes);
   const json& shapes = robot["bodies"][4]["shapes"];
   ASSERT_EQ(shapes.size(), arm.links[3].visuals.size() + 1);
   const json& load = shapes.back();
@@ -205,13 +211,13 @@ TEST(RobotScene, CarriesTheLoadAsItIsSimulated) {
   for (std::size_t i = 0; i + 1 < shapes.size(); ++i) {
     EXPECT_NE(shapes[i]["rgba"], load["rgba"]);
   }
-  EXPECT_EQ(make_robot(arm, 60, kRobots, notes)["bodies"], robot["bodies"]);
+  EXPECT_EQ(make_robot(arm, carry(60), kRobots, notes)["bodies"], robot["bodies"]);
 }
 
 TEST(RobotScene, DrawsPlainShapesWhereTheDescriptionHasNone) {
   std::vector<std::string> notes;
   const RobotModel arm = make_arm("", "");
-  const json robot = make_robot(arm, 0, kRobots, notes);
+  const json robot = make_robot(arm, {}, kRobots, notes);
   ASSERT_THAT(notes, ElementsAre(HasSubstr("robot bench has no visual shapes")));
   // The tube of the base ends at the first joint.
   const json& tube = robot["bodies"][0]["shapes"][1];
@@ -295,7 +301,7 @@ TEST(RobotScene, ReadsMeshesOfEachFormat) {
 </visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)");
   for (const std::string file : {"text.stl", "binary.STL", "square.obj", "square.dae"}) {
     std::vector<std::string> notes;
-    const json robot = make_robot(make_arm(make_mesh_visual(file), make_mesh_visual(file)), 0,
+    const json robot = make_robot(make_arm(make_mesh_visual(file), make_mesh_visual(file)), {},
                                   folder.path(), notes);
     EXPECT_THAT(notes, IsEmpty()) << file;
     ASSERT_EQ(robot["meshes"].size(), 1u) << file;
@@ -321,7 +327,7 @@ TEST(RobotScene, FindsMeshesInPackagesAndParents) {
         std::string("meshes/a.stl"), (folder.path() / "bench_support/meshes/a.stl").string(),
         "file://" + (folder.path() / "bench_support/meshes/a.stl").string()}) {
     std::vector<std::string> notes;
-    const json robot = make_robot(make_arm(make_mesh_visual(name), ""), 0, urdf_folder, notes);
+    const json robot = make_robot(make_arm(make_mesh_visual(name), ""), {}, urdf_folder, notes);
     EXPECT_THAT(notes, IsEmpty()) << name;
     EXPECT_EQ(robot["meshes"].size(), 1u) << name;
   }
@@ -339,7 +345,7 @@ TEST(RobotScene, ShowsAMeshThatCannotBeReadAsPlainShapesAndSaysSo) {
   for (const std::string file : {"bad.stl", "bad.obj", "bad.dae", "short.stl", "arm.blend",
                                  "folder.stl", "missing.stl", "package://nobody/x.stl"}) {
     std::vector<std::string> notes;
-    const json robot = make_robot(make_arm(make_mesh_visual(file), make_mesh_visual(file)), 0,
+    const json robot = make_robot(make_arm(make_mesh_visual(file), make_mesh_visual(file)), {},
                                   folder.path(), notes);
     EXPECT_THAT(notes, ElementsAre(HasSubstr(file))) << "one note for both";
     EXPECT_EQ(robot["meshes"].size(), 0u) << file;
@@ -362,7 +368,7 @@ TEST(RobotScene, LeavesOutWhatIsTooLarge) {
   const json robot =
       make_robot(make_arm(make_mesh_visual("first.obj") + make_mesh_visual("huge.stl"),
                           make_mesh_visual("second.obj")),
-                 0, folder.path(), notes);
+                 {}, folder.path(), notes);
   EXPECT_THAT(notes, ElementsAre(HasSubstr("huge.stl"),
                                  HasSubstr("second.obj of the robot is not shown: it has 120000")));
   EXPECT_EQ(robot["meshes"].size(), 1u);
@@ -375,7 +381,7 @@ TEST(RobotScene, SaysThatItCannotReadMeshes) {
   write_text(folder.path() / "text.stl", kTextStl);
   write_text(folder.path() / "binary.stl", make_binary_stl({{0, 0, 0, 2, 0, 0, 2, 2, 0}}));
   std::vector<std::string> notes;
-  make_robot(make_arm(make_mesh_visual("text.stl") + make_mesh_visual("binary.stl"), ""), 0,
+  make_robot(make_arm(make_mesh_visual("text.stl") + make_mesh_visual("binary.stl"), ""), {},
              folder.path(), notes);
   EXPECT_THAT(notes, ElementsAre(HasSubstr("without Assimp"), HasSubstr("without Assimp")));
 }

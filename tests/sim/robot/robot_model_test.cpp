@@ -389,16 +389,84 @@ TEST(AddLoad, RefusesWhatIsNoMass) {
   EXPECT_EQ(add_load(arm, 0).links[3].visuals.size(), arm.links[3].visuals.size());
 }
 
-TEST(AddLoad, NeedsATipThatPointsSomewhere) {
-  try {
-    add_load(parse_urdf(make_pendulum(), "pendulum.urdf"), 5);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::bad_data);
-    EXPECT_THAT(
-        error.what(),
-        HasSubstr("robot 'pendulum' cannot carry a load: its tip is the origin of its last link"));
-  }
+// A steel block on a flange at the origin of its link, by hand: along the axis of the last joint.
+TEST(AddLoad, PutsTheBlockOnTheLastAxisIfTheTipIsItsLinksOrigin) {
+  const RobotModel before = parse_urdf(make_pendulum(), "pendulum.urdf");
+  ASSERT_EQ(before.tip_pose.translation().norm(), 0);
+  const Link& rod = before.links.back();
+  const Link after = add_load(before, 5).links.back();
+  const Eigen::Vector3d axis = before.joints.back().axis;
+  EXPECT_DOUBLE_EQ(after.inertial.mass_kg, rod.inertial.mass_kg + 5);
+  const Eigen::Vector3d com =
+      (rod.inertial.mass_kg * rod.inertial.com_m + 5 * 0.045 * axis) / after.inertial.mass_kg;
+  EXPECT_LT((after.inertial.com_m - com).norm(), 1e-15);
+  EXPECT_LT((after.visuals.back().pose * Eigen::Vector3d(0, 0, 0.045) - 0.09 * axis).norm(), 1e-15);
+}
+
+// A body of the user's own in the frame of a tip that is turned by 90 degrees about z.
+TEST(AddLoad, PutsABodyWhereItIsInTheTipsFrame) {
+  RobotModel arm = load_irb4600();
+  arm.tip_pose.linear() = Eigen::AngleAxisd(kPi / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  LoadBody body;
+  body.com_m = Eigen::Vector3d(0.1, 0.02, -0.3);
+  body.inertia_m2 = make_tensor(0.01, 0.02, 0.025, 0.001, 0.002, 0.003);
+  const RobotModel loaded = add_load(arm, 8, body);
+  const Inertial& last = arm.links[3].inertial;
+  Inertial turned{8, Eigen::Vector3d(0.135 - 0.02, 0.1, -0.3),
+                  8 * make_tensor(0.02, 0.01, 0.025, -0.001, -0.003, 0.002)};
+  const Inertial expected = combine(last, turned);
+  EXPECT_DOUBLE_EQ(loaded.links[3].inertial.mass_kg, expected.mass_kg);
+  // Sums of a few numbers of the order of 1, with rounding errors of some 1e-16 each.
+  EXPECT_LT((loaded.links[3].inertial.com_m - expected.com_m).norm(), 1e-15);
+  EXPECT_LT((loaded.links[3].inertial.inertia_kg_m2 - expected.inertia_kg_m2).norm(), 1e-14);
+  EXPECT_EQ(loaded.links[3].visuals.back().kind, ShapeKind::sphere);
+}
+
+// Two equal rods in one plane, each 1 kg and 0.5 m long, the second one turned by its joint's middle
+// of 90 degrees: I = m l^2 / 3 about its end, and for the first joint by hand.
+TEST(ScalePlants, AddsArmaturesInProportionToWhatAJointMoves) {
+  RobotModel arm;
+  Joint joint;
+  joint.axis = Eigen::Vector3d::UnitY();
+  joint.lower = -1;
+  joint.upper = 1;
+  Link rod;
+  rod.inertial = {1, Eigen::Vector3d(0.25, 0, 0), make_tensor(0, 0.25 / 12, 0.25 / 12, 0, 0, 0)};
+  arm.joints = {joint, joint};
+  arm.joints[1].origin.translation() = Eigen::Vector3d(0.5, 0, 0);
+  arm.joints[1].lower = 0;
+  arm.joints[1].upper = kPi;
+  arm.links = {rod, rod};
+  const RobotModel changed = scale_plants(arm, {.armature_share = 0.5, .elastic_hz = 15});
+  const double second = 0.25 / 3;
+  const double first = 0.25 / 3 + 0.25 / 12 + 0.5 * 0.5 + 0.25 * 0.25;
+  EXPECT_NEAR(changed.joints[0].plant.armature, first / 2, 1e-15);
+  EXPECT_NEAR(changed.joints[1].plant.armature, second / 2, 1e-15);
+  EXPECT_NEAR(changed.joints[1].plant.stiffness, std::pow(2 * kPi * 15, 2) * second / 2, 1e-10);
+}
+
+JointPlant make_rubbing() {
+  JointPlant plant;
+  plant.armature = 2;
+  plant.viscous = 3;
+  plant.coulomb = 5;
+  plant.stribeck = -1;
+  return plant;
+}
+
+TEST(ScalePlants, MultipliesWhatIsThere) {
+  RobotModel arm = load_irb4600();
+  arm.joints[1].plant = make_rubbing();
+  arm.joints[2].plant.armature = 4;
+  arm.joints[2].plant.stiffness = 100;
+  const RobotModel changed =
+      scale_plants(arm, {.friction = 2, .armature = 1.5, .stiffness = 0.5, .armature_share = 0});
+  EXPECT_EQ(changed.joints[1].plant.armature, 3);
+  EXPECT_EQ(changed.joints[1].plant.viscous, 6);
+  EXPECT_EQ(changed.joints[1].plant.coulomb, 10);
+  EXPECT_EQ(changed.joints[1].plant.stribeck, -2);
+  EXPECT_EQ(changed.joints[2].plant.stiffness, 50);
+  EXPECT_TRUE(changed.joints[0].plant.is_ideal());
 }
 
 TEST(ScaleMasses, ScalesWhatMovesAndNothingElse) {

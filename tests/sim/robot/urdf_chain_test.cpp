@@ -120,8 +120,7 @@ TEST(UrdfChain, NotesSayWhatWasDone) {
       ElementsAre(
           "<inertial> with zeros is taken for none: 'tool0'",
           "joints are simulated without the <dynamics> of 'turn' (damping 0.5, friction 0.25), "
-          "'bend' (damping 0.1); [perturbation] can add friction: viscous_friction_n_m_s_per_rad, "
-          "coulomb_friction_n_m (docs/robust.md)",
+          "'bend' (damping 0.1); robot.dynamics = true gives them this friction",
           "<limit effort=\"0\"> is taken for no limit: 'turn'",
           "<limit velocity=\"0\"> is taken for no limit: 'turn'",
           "the soft limits of <safety_controller> are left out: 'turn'",

@@ -216,9 +216,7 @@ class LanePlant<V, Chain, true> {
   ARMWRIGHT_INLINE void show_measured() const {}
   ARMWRIGHT_INLINE void show_true(V* /*q*/) const {}
   ARMWRIGHT_INLINE void remember() const {}
-  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, V /*substep_s*/) const {
-    return effort;
-  }
+  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, V /*substep_s*/) const { return effort; }
   template <class Dynamics>
   ARMWRIGHT_INLINE void add_inertia(Dynamics& /*dynamics*/) const {}
   ARMWRIGHT_INLINE V get_pushed_way(int /*joint*/, V way, V /*substep_s*/) const { return way; }
