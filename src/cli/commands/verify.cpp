@@ -24,6 +24,7 @@
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "sim/engines/engine_table.hpp"
+#include "sim/tracking/elasticity.hpp"
 
 namespace armwright {
 namespace {
@@ -50,7 +51,8 @@ weaken motors or change gains. Then it changes the friction, the rotors and the 
   worse   not more cases fail than in its own setting, but the median error is larger than that
   fails   more cases fail, or the median error is more than 10 times its own or does not exist
 
-A setting that cannot be simulated has a row with the reason. It is no failure of the design.
+Elastic joints get as many substeps as their springs need. A setting that cannot be simulated has a row with the
+reason. It is no failure of the design.
 
 A failure is a case with an error above 100 mm or without a number. For the first failure of each setting, the command
 that simulates it again and writes its trajectory is printed. The exit code is 3 if any setting is worse or fails.)";
@@ -350,6 +352,19 @@ VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& ow
   return matrix;
 }
 
+// Gives a plant with springs the substeps that these need.
+void resolve_springs(const TrackingConfig& config, VerifySetting& setting) {
+  const OtherPlant* const other = find_other_plant(setting.perturbation);
+  if (other == nullptr) {
+    return;
+  }
+  const auto mode = find_fastest_mode(scale_plants(config.robot, other->changes));
+  if (mode) {
+    setting.substeps =
+        std::max(setting.substeps, count_substeps(*mode, config.task.control_period_s));
+  }
+}
+
 // The problem of one setting, or the reason why it cannot be made.
 struct PreparedSetting {
   std::vector<std::string> overrides;
@@ -395,8 +410,11 @@ int run_verify(const VerifyOptions& options, Session& session) {
     cases.count = std::min(cases.count, kUsualCases);
   }
   const VerifySetting own_setting = get_own_setting(tracking);
-  const auto settings =
+  auto settings =
       list_verify_settings(own_setting, choose_matrix(options, own_setting, tracking.config()));
+  for (VerifySetting& setting : settings) {
+    resolve_springs(tracking.config(), setting);
+  }
   // All settings are validated before the first is simulated.
   std::vector<PreparedSetting> prepared;
   for (const VerifySetting& setting : settings) {

@@ -127,17 +127,17 @@ void check_elasticity(const ConfigTable& physics, const TrackingConfig& config) 
     return;
   }
   const double period_s = config.task.control_period_s;
-  const double turn_rad = mode->rate_rad_per_s * period_s / config.task.physics.substeps;
-  if (turn_rad > kMostTurnPerStep_rad) {
+  const int needed = count_substeps(*mode, period_s);
+  if (config.task.physics.substeps < needed) {
+    const double step_s = period_s / config.task.physics.substeps;
     physics.refuse(
         kPhysicsSubsteps,
         fmt::format(
             "the spring of joint '{}' moves at {:.4g} rad/s, which is {:.3g} rad per step of "
             "{:.4g} s; at most {} rad can be simulated: set physics.substeps to {} or more, "
             "or make the joint less stiff or less damped",
-            sanitize(config.robot.joints[mode->joint].name), mode->rate_rad_per_s, turn_rad,
-            period_s / config.task.physics.substeps, kMostTurnPerStep_rad,
-            std::ceil(mode->rate_rad_per_s * period_s / kMostTurnPerStep_rad)));
+            sanitize(config.robot.joints[mode->joint].name), mode->rate_rad_per_s,
+            mode->rate_rad_per_s * step_s, step_s, kMostTurnPerStep_rad, needed));
   }
 }
 

@@ -15,10 +15,9 @@
 
 namespace armwright::articulated {
 
-// The numbers of one joint's friction.
+// The numbers of one joint's dry friction.
 template <class V>
 struct FrictionNumbers {
-  V viscous;             // d
   V breakaway;           // c + s_t
   V stribeck;            // s_t
   V inverse_transition;  // 1 / v_w
@@ -52,21 +51,21 @@ ARMWRIGHT_INLINE Fraction<V> calc_saturation(V x) {
                                                            s * constant(7.776519040084557e-07))))};
 }
 
-// Returns phi. `has_stribeck`: s_t may differ from 0. Without it the result has fewer operations
-// and other last bits, so all steps of a simulation must agree on
-// it.
+// Returns phi - d. `has_stribeck`: s_t may differ from 0. Without it the result has fewer operations
+// and other last bits, so all steps of a simulation must agree on it.
 template <class V>
-ARMWRIGHT_INLINE V calc_friction_chord(const FrictionNumbers<V>& its, V rate, bool has_stribeck) {
+ARMWRIGHT_INLINE Fraction<V> calc_friction_chord(const FrictionNumbers<V>& its, V rate,
+                                                 bool has_stribeck) {
   using T = typename V::Scalar;
   // At rest the chord is the tangent: there tanh(x) / x is 1.
   const V speed = max(abs(rate), V(static_cast<T>(1e-30)));
   const Fraction<V> rise = calc_saturation(speed * its.inverse_transition);
   if (!has_stribeck) {
-    return its.viscous + its.breakaway * rise.n / (rise.d * speed);
+    return {its.breakaway * rise.n, rise.d * speed};
   }
   const Fraction<V> fall = calc_saturation(speed * its.inverse_stribeck);
-  return its.viscous + (its.breakaway * rise.n * fall.d - its.stribeck * fall.n * rise.d) /
-                           (rise.d * fall.d * speed);
+  return {its.breakaway * rise.n * fall.d - its.stribeck * fall.n * rise.d,
+          rise.d * fall.d * speed};
 }
 
 // The efforts of a counterbalance, as the kernels need them.

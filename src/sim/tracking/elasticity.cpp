@@ -61,6 +61,11 @@ std::pair<double, Eigen::Index> find_largest(const Eigen::MatrixXd& compliance,
 
 }  // namespace
 
+int count_substeps(const ElasticMode& mode, double control_period_s) {
+  const double substeps = std::ceil(mode.rate_rad_per_s * control_period_s / kMostTurnPerStep_rad);
+  return static_cast<int>(std::min(substeps, 1e9));
+}
+
 std::optional<ElasticMode> find_fastest_mode(const RobotModel& robot) {
   std::vector<Eigen::Index> elastic;
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {

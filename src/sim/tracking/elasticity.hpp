@@ -25,5 +25,7 @@ std::optional<ElasticMode> find_fastest_mode(const RobotModel& robot);
 
 // The largest rate times step (rad) that is simulated: there the frequency is 1 % off.
 inline constexpr double kMostTurnPerStep_rad = 0.5;
+// Returns the substeps of a control period that a mode needs at least.
+int count_substeps(const ElasticMode& mode, double control_period_s);
 
 }  // namespace armwright

@@ -97,8 +97,10 @@ class SegmentKernel {
         __builtin_prefetch(call_.targets[lane] + ahead * joints());
       }
     }
-    if (call_.control != nullptr) [[unlikely]] {
-      call_.control(call_, step);
+    // A plant that is not ideal leaves the kernel no room for the PID: the processor would have to
+    // decode the instructions of every step again.
+    if (!kIdeal || call_.control != nullptr) [[unlikely]] {
+      (call_.control != nullptr ? call_.control : control_joints<V, controllers::Pid>)(call_, step);
       chain_.for_up([&](auto i) __attribute__((always_inline)) { effort_[i] = field(kEffort)[i]; });
       return;
     }

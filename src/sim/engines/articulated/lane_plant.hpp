@@ -41,19 +41,27 @@ class PlantStep {
   }
   // Replaces the controllers' efforts by those that act on the links during a substep, and computes
   // the inertia that joins each joint. Moves the motors of elastic joints to the end of the substep.
+  // `dry` is memory for one fraction per joint.
   __attribute__((noinline)) static void act(const SegmentCall<T>& call, V substep_s, V* efforts,
-                                            V* inertia) {
+                                            V* inertia, Fraction<V>* dry) {
     const PlantStep plant(call);
+    // All quotients come before all divisions, so that the processor works on several joints at
+    // once.
+    for (int i = 0; i < call.joints; ++i) {
+      if (plant.has(kHasFriction, i)) {
+        dry[i] = plant.calc_dry_friction(i);
+      }
+    }
     for (int i = 0; i < call.joints; ++i) {
       V effort = efforts[i];
       if (call.past != nullptr) {
         effort = plant.perturb(i, effort);
       }
       if (plant.has(kElastic, i)) {
-        effort = plant.pass_spring(i, effort, substep_s);
+        effort = plant.pass_spring(i, effort, substep_s, dry);
         inertia[i] = V(0);
       } else {
-        inertia[i] = plant.rub(i, plant.state(kRate, i), substep_s, effort);
+        inertia[i] = plant.rub(i, plant.state(kRate, i), substep_s, dry, effort);
       }
       if (plant.has(kBalanced, i)) {
         effort += calc_balance(call.balances[i], plant.state(kQ, i), plant.slides(i));
@@ -112,28 +120,32 @@ class PlantStep {
   }
 
   // Moves the motor by a substep and returns the spring's effort at its start.
-  ARMWRIGHT_INLINE V pass_spring(int i, V effort, V substep_s) const {
+  ARMWRIGHT_INLINE V pass_spring(int i, V effort, V substep_s, const Fraction<V>* dry) const {
     V& place = state(kMotor, i);
     V& rate = state(kMotorRate, i);
     const V spring = number(kStiffness, i) * (place - state(kQ, i)) +
                      number(kDamping, i) * (rate - state(kRate, i));
     effort -= spring;
-    const V inertia = rub(i, rate, substep_s, effort);
+    const V inertia = rub(i, rate, substep_s, dry, effort);
     rate += substep_s * (effort / inertia);
     place += substep_s * rate;
     return spring;
   }
 
+  // Returns the chord's slope without the viscous friction.
+  ARMWRIGHT_INLINE Fraction<V> calc_dry_friction(int i) const {
+    return calc_friction_chord(
+        FrictionNumbers<V>{number(kBreakaway, i), number(kStribeck, i),
+                           number(kInverseTransition, i), number(kInverseStribeck, i)},
+        state(has(kElastic, i) ? kMotorRate : kRate, i), has(kHasStribeck, i));
+  }
   // Takes the friction at a rate from the effort. Returns the armature with what is implicit in the
   // friction.
-  ARMWRIGHT_INLINE V rub(int i, V rate, V substep_s, V& effort) const {
+  ARMWRIGHT_INLINE V rub(int i, V rate, V substep_s, const Fraction<V>* dry, V& effort) const {
     if (!has(kHasFriction, i)) {
       return number(kArmature, i);
     }
-    const V chord = calc_friction_chord(
-        FrictionNumbers<V>{number(kDrag, i), number(kBreakaway, i), number(kStribeck, i),
-                           number(kInverseTransition, i), number(kInverseStribeck, i)},
-        rate, has(kHasStribeck, i));
+    const V chord = number(kDrag, i) + dry[i].n / dry[i].d;
     effort -= number(kOffset, i) + chord * rate;
     return number(kArmature, i) + substep_s * chord;
   }
@@ -155,8 +167,9 @@ class LanePlant<V, Chain, false> {
         newest_(call.newest),
         effort_(scratch),
         inertia_(scratch + call.joints),
-        held_(scratch + 2 * call.joints) {
-    scratch += 3 * call.joints;
+        held_(scratch + 2 * call.joints),
+        dry_(reinterpret_cast<Fraction<V>*>(scratch + 3 * call.joints)) {
+    scratch += 5 * call.joints;
   }
 
   // show_measured() replaces the true positions in the state by those that the controllers measure;
@@ -183,7 +196,7 @@ class LanePlant<V, Chain, false> {
   // Moves the motors of elastic joints to its end.
   ARMWRIGHT_INLINE const V* calc_effort(const V* effort, V substep_s) {
     chain_.for_up([&](auto i) __attribute__((always_inline)) { effort_[i] = effort[i]; });
-    PlantStep<V>::act(call_, substep_s, effort_, inertia_);
+    PlantStep<V>::act(call_, substep_s, effort_, inertia_, dry_);
     return effort_;
   }
   // Adds the inertia of the motors of rigid joints, and what is implicit in the friction.
@@ -205,6 +218,7 @@ class LanePlant<V, Chain, false> {
   Chain chain_;  // a copy: a reference would keep the whole kernel in memory
   int newest_;
   V *effort_, *inertia_, *held_;  // one pack per joint
+  Fraction<V>* dry_;              // one per joint
 };
 
 // The ideal plant: every function does nothing.
