@@ -57,10 +57,10 @@ py::tuple optimize(const ProblemHandle& problem, const py::object& optimizer,
   request.plan =
       make_plan(load_for_call(problem, host, place.jobs), load_row(optimizer, host), question);
   request.folder = place.choose(make_run_name(request.plan));
-  if (const std::string old = find_old_setting(request.folder, problem.loaded, problem.settings);
+  if (const auto old = find_old_settings(request.folder, problem.loaded, problem.settings);
       !old.empty()) {
     std::vector<std::string> settings = problem.settings;
-    settings.push_back(old);
+    settings.insert(settings.end(), old.begin(), old.end());
     request.plan.problem = load_problem(problem.name, settings);
   }
   request.jobs = place.jobs;

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "base/error.hpp"
@@ -56,13 +57,14 @@ struct OptimizeOptions : PlanOptions {
 };
 
 // Makes the plan of the run and chooses its folder. If the folder holds a run of version 1.0 that
-// needs a setting (find_old_setting()), returns this setting; `options` and the plan get it too.
-std::string make_request(OptimizeOptions& options, RunRequest& request) {
+// needs settings (find_old_settings()), returns them; `options` and the plan get them too.
+std::vector<std::string> make_request(OptimizeOptions& options, RunRequest& request) {
   request.plan = options.make_plan();
   request.folder = options.folder.choose(make_run_name(request.plan));
-  std::string old = find_old_setting(request.folder, request.plan.problem, options.overrides.set);
+  std::vector<std::string> old =
+      find_old_settings(request.folder, request.plan.problem, options.overrides.set);
   if (!old.empty()) {
-    options.overrides.set.push_back(old);
+    std::ranges::copy(old, std::back_inserter(options.overrides.set));
     request.plan.problem = load_problem(options.get_problem(), options.get_overrides());
   }
   return old;
@@ -198,16 +200,13 @@ int run_optimize(OptimizeOptions options, Session& session) {
         request.jobs);
   }
   apply_time_limit(options.time_limit, session.stop);
-  const std::string old_setting = make_request(options, request);
+  const std::vector<std::string> old_settings = make_request(options, request);
   std::vector<std::string> notes = check_paths(request.plan.problem);
-  if (!old_setting.empty()) {
+  if (!old_settings.empty()) {
     notes.push_back(
-        fmt::format("version 1.0 began this run {}, so the run keeps it ({}); --new begins a run "
-                    "on the problem "
-                    "as it is now",
-                    old_setting == kPlainForm ? "on the plain form of the function"
-                                              : "with its own solver of the inverse kinematics",
-                    old_setting));
+        fmt::format("version 1.0 began this run, so the run keeps the problem of then ({}); --new "
+                    "begins a run on the problem as it is now",
+                    join(old_settings, ", ")));
   }
   request.command_line = make_command(options, session, request.folder);
   if (!options.quiet) {

@@ -159,13 +159,20 @@ void read_path_and_proposal(const ConfigTable& table, TrackingConfig& config,
 std::filesystem::path find_plant(const ConfigTable& table, const std::filesystem::path& urdf) {
   const std::string named = table.get(kRobotPlant);
   if (named != kPlantBeside) {
-    return named.empty() ? "" : resolve_named(table, kRobotPlant, "robots");
+    if (named.empty()) {
+      table.leave_out(kRobotPlant);  // so recorded version 1.0
+      return "";
+    }
+    return resolve_named(table, kRobotPlant, "robots");
   }
   const std::filesystem::path beside = name_plant_file(urdf);
-  const bool exists = path_exists(beside);
+  if (!path_exists(beside)) {
+    table.leave_out(kRobotPlant);
+    return "";
+  }
   // A record is read where the URDF is found, so the name is that of the URDF.
-  table.settle(kRobotPlant, exists ? name_plant_file(table.get(kRobotUrdf)).string() : "");
-  return exists ? beside : "";
+  table.settle(kRobotPlant, name_plant_file(table.get(kRobotUrdf)).string());
+  return beside;
 }
 
 // Returns the robot that [robot] describes, with the masses of its file.
@@ -176,6 +183,9 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
   options.tip = table.get(kRobotTip);
   options.density_kg_per_m3 = table.get(kRobotDensity);
   options.dynamics = table.get(kRobotDynamics);
+  if (!options.dynamics) {
+    table.leave_out(kRobotDynamics);
+  }
   const std::filesystem::path plant = find_plant(table, urdf);
   try {
     RobotModel robot = load_urdf(urdf, options);

@@ -400,8 +400,9 @@ void keep_old_problems(const std::filesystem::path& recorded, StudyPlan& plan) {
   for (StudyProblem& problem : plan.problems) {
     const auto found = std::ranges::find(raw.problems, problem.label, &NamedProblem::label);
     const TrackingProblem* const arm = problem.loaded.tracking();
-    const bool is_numeric = arm != nullptr && !arm->setup().has_closed_form();
-    if (found != raw.problems.end() && (problem.loaded.function || is_numeric) &&
+    const bool has_changed =
+        arm != nullptr && (!arm->setup().has_closed_form() || arm->config().own_effort_limits);
+    if (found != raw.problems.end() && (problem.loaded.function || has_changed) &&
         found->configuration_sha256 != calc_configuration_hash(problem.loaded)) {
       NamedProblem named = *found;
       named.name = problem.name;

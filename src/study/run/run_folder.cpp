@@ -284,31 +284,41 @@ bool has_first_selection(const std::filesystem::path& folder) {
   return manifest.contains(selection) && !manifest[selection].contains("most");
 }
 
-std::string find_old_setting(const std::filesystem::path& folder, const LoadedProblem& problem,
-                             std::span<const std::string> settings) {
+std::vector<std::string> find_old_settings(const std::filesystem::path& folder,
+                                           const LoadedProblem& problem,
+                                           std::span<const std::string> settings) {
+  const TrackingProblem* const arm = problem.tracking();
   const bool has_instance = problem.function && problem.function->instance != 0;
-  const bool has_lanes = problem.tracking() != nullptr &&
-                         !problem.tracking()->setup().has_closed_form() &&
-                         problem.tracking()->setup().task().solver == NumericSolver::lanes;
-  if ((!has_instance && !has_lanes) || !has_first_selection(folder)) {
-    return "";
-  }
-  const std::string old = has_instance ? kPlainForm : kScalarSolver;
-  const std::string key = old.substr(0, old.find('='));
-  const auto names_key = [&](const std::string& setting) {
-    const std::size_t begin = setting.find_first_not_of(' ');
-    const std::size_t end = setting.find_first_of(" =", begin);
-    return begin != std::string::npos && setting.substr(begin, end - begin) == key;
-  };
-  if (std::ranges::any_of(settings, names_key)) {
-    return "";
+  if ((!has_instance && arm == nullptr) || !has_first_selection(folder)) {
+    return {};
   }
   const json recorded = find(read_manifest(folder / "manifest.json"), "/configuration/problem");
-  const bool is_old = has_instance ? find(recorded, "/function/name") == problem.function->name &&
-                                         find(recorded, "/function/instance").is_null()
-                                   : find(recorded, "/robot").is_object() &&
-                                         find(recorded, "/task/solver").is_null();
-  return is_old ? old : "";
+  const auto lacks = [&](const char* key) { return find(recorded, key).is_null(); };
+  std::vector<std::string> old;
+  const auto add = [&](bool is_needed, const std::string& key, const std::string& value) {
+    const bool is_named = std::ranges::any_of(settings, [&](const std::string& setting) {
+      const std::size_t begin = setting.find_first_not_of(' ');
+      const std::size_t end = setting.find_first_of(" =", begin);
+      return begin != std::string::npos && setting.substr(begin, end - begin) == key;
+    });
+    if (is_needed && !is_named) {
+      old.push_back(key + "=" + value);
+    }
+  };
+  if (arm == nullptr) {
+    add(find(recorded, "/function/name") == problem.function->name && lacks("/function/instance"),
+        "function.instance", "0");
+    return old;
+  }
+  if (!find(recorded, "/robot").is_object()) {
+    return old;
+  }
+  const bool is_numeric = !arm->setup().has_closed_form();
+  add(is_numeric && arm->setup().task().solver == NumericSolver::lanes && lacks("/task/solver"),
+      "task.solver", "scalar");
+  add(arm->config().own_effort_limits && lacks("/robot/dynamics"), "robot.dynamics", "false");
+  add(arm->config().own_effort_limits && lacks("/robot/plant"), "robot.plant", "\"\"");
+  return old;
 }
 
 namespace {

@@ -75,17 +75,14 @@ void cover_run(const Folder& folder, bool has_ended);
 // damaged, and Error{io}.
 bool has_first_selection(const std::filesystem::path& folder);
 
-// The settings with which a problem is what it was in version 1.0: the plain form of a function, and
-// the solver of the numeric inverse kinematics.
-inline constexpr const char* kPlainForm = "function.instance=0";
-inline constexpr const char* kScalarSolver = "task.solver=scalar";
-
-// Returns which of these settings the run in the folder needs in addition to `settings`, with which
-// `problem` was loaded; an empty text if none. It needs one if version 1.0, which had no other form
-// and no other solver, began the run, and `settings` do not name the key. Throws Error{bad_data} if
-// the manifest is damaged, and Error{io}.
-std::string find_old_setting(const std::filesystem::path& folder, const LoadedProblem& problem,
-                             std::span<const std::string> settings);
+// Returns the settings that the run in the folder needs in addition to `settings`, with which
+// `problem` was loaded: those with which a problem is what it was in version 1.0. These are the
+// plain form of a function, the scalar solver of the numeric inverse kinematics, and ideal joints.
+// The list is empty unless version 1.0 began the run, and has no key that `settings` name. Throws
+// Error{bad_data} if the manifest is damaged, and Error{io}.
+std::vector<std::string> find_old_settings(const std::filesystem::path& folder,
+                                           const LoadedProblem& problem,
+                                           std::span<const std::string> settings);
 
 // Returns the problem that the run in the folder has recorded. Starts no program. Throws as
 // load_recorded_plan().
