@@ -316,7 +316,7 @@ TEST(RobotPlant, AutoRecordsThatThereWasNoFile) {
   std::filesystem::remove(folder.path("arm.plant.toml"));
   const std::vector<std::string> overrides = {"robot.plant=auto"};
   const LoadedProblem problem = folder.load("p.toml", overrides);
-  EXPECT_THAT(problem.resolved_json, HasSubstr(R"("plant":"")"));
+  EXPECT_THAT(problem.resolved_json, Not(HasSubstr("\"plant\"")));
   folder.write("arm.plant.toml", "[joint.rail]\narmature_kg = 2\n");  // later
   EXPECT_FALSE(
       get_robot(load_recorded_problem(problem.resolved_json, "p", folder.path(""))).has_plant());
