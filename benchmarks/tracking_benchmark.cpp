@@ -168,7 +168,7 @@ RobotModel make_plant(RobotModel robot, std::size_t parts) {
   return robot;
 }
 
-// What the plant of real joints costs the engine `articulated` per robot step.
+// Measures what the plant of real joints costs the engine `articulated` per robot step.
 void BM_PlantAgainstIdealArm(benchmark::State& state) {
   const LoadedProblem problem = load_problem("q1-complex");
   const TrackingSetup& ideal = problem.tracking()->setup();

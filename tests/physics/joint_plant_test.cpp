@@ -419,6 +419,102 @@ TEST(JointPlantInEngines, Agree) {
   }
 }
 
+// Returns targets on which every joint swings by 0.3 rad or m.
+TargetTable make_swing(const RobotModel& robot, int steps) {
+  TargetTable table;
+  table.joints = robot.joint_count();
+  table.steps = steps;
+  for (std::size_t i = 0; i < table.joints; ++i) {
+    table.start_positions.push_back(0.2 * static_cast<double>(i) - 0.5);
+  }
+  for (int step = 0; step < steps; ++step) {
+    for (std::size_t i = 0; i < table.joints; ++i) {
+      const double phase = 0.05 * (step + 1) * (1 + 0.1 * static_cast<double>(i));
+      table.joint_positions.push_back(table.start_positions[i] + 0.15 * (1 - std::cos(phase)));
+    }
+  }
+  Segment segment;
+  segment.steps = steps;
+  segment.window_start = steps - 1;
+  segment.duration_s = 0.01 * steps;
+  table.segments = {segment};
+  return table;
+}
+
+// Returns the robot with a full plant whose size follows from the inertia that each joint moves, and
+// slow controllers for it.
+std::pair<RobotModel, ArmDesign> make_plant_of_size(RobotModel robot, const TargetTable& targets) {
+  const VectorXd start = Eigen::Map<const VectorXd>(targets.start_positions.data(),
+                                                    static_cast<Eigen::Index>(robot.joint_count()));
+  const MatrixXd mass = make_arm<ArticulatedArm>(robot, start).calc_mass_matrix();
+  ArmDesign design;
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    JointPlant& plant = robot.joints[i].plant;
+    const double m = mass(at, at);
+    plant.armature = 0.6 * m;
+    plant.viscous = 0.3 * m;
+    plant.coulomb = 0.4 * m;
+    plant.stribeck = 0.2 * m;
+    plant.offset = 0.05 * m;
+    plant.counterbalance = {-2, 2, {-m, 2 * m, m}};
+    design.joints.push_back({{100 * m, 200 * m, 20 * m}, {-1e4, 1e4}});
+  }
+  JointPlant& spring = robot.joints.front().plant;
+  spring.stiffness = 100 * 100 * spring.armature;
+  return {robot, design};
+}
+
+// Arms of 3, 6 and 7 joints, with tilted axes and a slider, run other kernels than the thesis's arm.
+TEST(JointPlantInEngines, AgreeOnArmsOfAnyShape) {
+  const auto load = [](const std::string& name) {
+    return load_urdf(ARMWRIGHT_CONFIGS "/robots/" + name + ".urdf");
+  };
+  TrackingTask task;
+  task.physics.substeps = 10;
+  task.count_first_point = true;
+  for (const RobotModel& ideal :
+       {load("arm7"), load("irb4600_six"), make_skew_arm(), make_mixed_arm("rpr")}) {
+    SCOPED_TRACE(ideal.joint_count());
+    const TargetTable targets = make_swing(ideal, 150);
+    const auto [robot, design] = make_plant_of_size(ideal, targets);
+    const TrackingSetup setup(robot, task);
+    PlantVariation variation;
+    variation.viscous_friction.assign(robot.joint_count(), 1e-3);
+    variation.coulomb_friction.assign(robot.joint_count(), 1e-3);
+    variation.torque_ripple.assign(robot.joint_count(), 0.02);
+    variation.ripple_phase_rad.assign(robot.joint_count(), 0.3);
+    variation.delay_substeps = 4;
+    for (const PlantVariation* perturbed : {static_cast<const PlantVariation*>(nullptr),
+                                            static_cast<const PlantVariation*>(&variation)}) {
+      TrackingJob job = make_job(design, targets, kNever, {.motion = true});
+      job.variation = perturbed;
+      const auto simulate = [&](const std::string& engine, const EngineOptions& options) {
+        auto result = std::move(make_engine(engine, options)->simulate(setup, {&job, 1}).at(0));
+        EXPECT_EQ(result.status, SimulationStatus::ok) << engine << ": " << result.reason;
+        return result;
+      };
+      const TrackingResult expected = simulate("articulated", {.simd = SimdLevel::scalar});
+      for (const SimdLevel level :
+           {SimdLevel::sse2, SimdLevel::avx2, SimdLevel::avx512, SimdLevel::scalar}) {
+        if (!is_supported(level)) {
+          continue;
+        }
+        SCOPED_TRACE(to_string(level));
+        EXPECT_LT(calc_largest_gap_m(simulate("articulated", {.simd = level}), expected), 1e-9);
+        EXPECT_LT(
+            calc_largest_gap_m(
+                simulate("articulated", {.precision = Precision::single, .simd = level}), expected),
+            1e-3);
+      }
+#ifdef ARMWRIGHT_WITH_MUJOCO
+      EXPECT_LT(calc_largest_gap_m(simulate("mujoco", {}), expected), 1e-6);
+#endif
+      EXPECT_LT(calc_largest_gap_m(simulate("ode", {}), expected), 5e-3);
+    }
+  }
+}
+
 // A lane's result does not depend on its neighbours, even if these have other plants.
 TEST(JointPlantInLanes, NeighboursDoNotMatter) {
   RobotModel stiff = make_full_arm();
@@ -472,6 +568,18 @@ TEST(JointPlantFeedForward, TakesTheArmToItsTargets) {
       ASSERT_NEAR(calc_displacement(JointKind::revolute, target, driven.q()[i]), 0, 1e-7)
           << "step " << step;
     }
+  }
+}
+
+// The joint's range decides which turn a position belongs to, wherever the table lies.
+TEST(Counterbalance, MayBeGivenBeyondTheRange) {
+  Joint joint;
+  joint.lower = -3;
+  joint.upper = 3;
+  joint.plant.counterbalance = {-3, 9, {-3, 0, 3, 6, 9}};  // s = q
+  for (const double q : {-3.0, -1.2, 0.4, 3.0}) {
+    EXPECT_NEAR(articulated::calc_counterbalance(joint, q), q, 1e-12);
+    EXPECT_NEAR(articulated::calc_counterbalance(joint, q + 2 * kPi), q, 1e-12);
   }
 }
 

@@ -1,5 +1,7 @@
 #include "sim/dynamics/joint_effort.hpp"
 
+#include <cmath>
+
 namespace armwright::articulated {
 namespace {
 
@@ -16,19 +18,22 @@ double calc_friction_chord(const JointPlant& plant, double rate) {
 }
 
 double calc_counterbalance(const Joint& joint, double position) {
-  const BalanceGrid grid = make_balance_grid(joint.plant.counterbalance);
+  const BalanceGrid grid = make_balance_grid(joint);
   return grid.efforts == nullptr
              ? 0
              : calc_balance(grid, Number(position), joint.kind == JointKind::prismatic).v;
 }
 
-BalanceGrid make_balance_grid(const Counterbalance& its) {
+BalanceGrid make_balance_grid(const Joint& joint) {
+  const Counterbalance& its = joint.plant.counterbalance;
   if (its.efforts.empty()) {
     return {0, 0, 0, 0, nullptr};
   }
   const int last = static_cast<int>(its.efforts.size()) - 1;
-  return {(its.lower + its.upper) / 2, its.lower, last / (its.upper - its.lower), last,
-          its.efforts.data()};
+  // The joint's range may lie anywhere in that of the efforts.
+  const bool has_range = std::isfinite(joint.lower) && joint.upper > joint.lower;
+  const double middle = has_range ? (joint.lower + joint.upper) / 2 : (its.lower + its.upper) / 2;
+  return {middle, its.lower, last / (its.upper - its.lower), last, its.efforts.data()};
 }
 
 }  // namespace armwright::articulated

@@ -13,7 +13,7 @@ double calc_friction_chord(const JointPlant& plant, double rate);
 // may have whole turns too many.
 double calc_counterbalance(const Joint& joint, double position);
 
-// Returns the grid of a counterbalance, which must outlive it. Without efforts all is 0.
-BalanceGrid make_balance_grid(const Counterbalance& counterbalance);
+// Returns the grid of a joint's counterbalance, which must outlive it. Without efforts all is 0.
+BalanceGrid make_balance_grid(const Joint& joint);
 
 }  // namespace armwright::articulated

@@ -32,7 +32,7 @@ struct Fraction {
 
 // Returns tanh(x) for x >= 0 with a relative error of at most 3.1e-8, as a quotient of polynomials
 // of x^2 (a fit of least largest error on [0, 9]). Arguments beyond 9 count as 9. The denominator is
-// at least 1 and at most 3000.
+// at least 1 and at most 417.
 template <class V>
 ARMWRIGHT_INLINE Fraction<V> calc_saturation(V x) {
   using T = typename V::Scalar;
@@ -70,7 +70,7 @@ ARMWRIGHT_INLINE Fraction<V> calc_friction_chord(const FrictionNumbers<V>& its, 
 
 // The efforts of a counterbalance, as the kernels need them.
 struct BalanceGrid {
-  double middle;        // of the range; whole turns are left out around it
+  double middle;        // of the joint's range; whole turns are left out around it
   double lower;         // the position of the first effort
   double inverse_step;  // efforts per rad or m
   int last;             // the number of the last effort, from 0

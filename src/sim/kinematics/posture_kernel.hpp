@@ -580,7 +580,8 @@ struct Search {
       if (lanes::find_less(half, live) == 0) {
         break;
       }
-      const V certain = live * improve(posture, pass == 0, live);
+      const V sure = improve(posture, pass == 0, live);  // changes `live`
+      const V certain = live * sure;
       reached += certain;
       live -= certain;
       if (lanes::find_less(half, live) == 0) {

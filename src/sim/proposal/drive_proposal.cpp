@@ -49,7 +49,11 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
   const std::size_t n = setup.robot().joint_count();
   const std::vector<double> nothing(n, 0);
   Demand demand{nothing, nothing, nothing};
-  ArticulatedArm arm(setup.robot(), tables.front().start_positions, setup.task().physics);
+  RobotModel rigid = setup.robot();  // feed-forward efforts treat elastic joints as rigid, too
+  for (Joint& joint : rigid.joints) {
+    joint.plant.stiffness = 0;
+  }
+  ArticulatedArm arm(rigid, tables.front().start_positions, setup.task().physics);
   const std::vector<double> rest(n, 0);
   for (const TargetTable& table : tables) {
     for (int step = 0; step < table.steps; ++step) {

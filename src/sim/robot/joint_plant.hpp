@@ -1,4 +1,4 @@
-// What stands between a joint's motor and its link: rotor inertia, friction, elasticity and
+// The plant of a joint lies between its motor and its link: rotor inertia, friction, elasticity and
 // counterbalance. With q the joint's position, v its rate, and u the effort of its controller, a
 // rigid joint obeys
 //   M(q) qdd + b(q, v) = u + s(q) - A qdd - f(v),

@@ -25,8 +25,11 @@ std::span<const double> ArmPlant::measure() {
   // The oldest positions come after the newest ones in the ring.
   measured_ = past_[(newest_ + 1) % past_.size()];
   const double quantum = variation_ == nullptr ? 0 : variation_->quantum;
-  for (double& position : measured_) {
-    position = quantum > 0 ? std::nearbyint(position / quantum) * quantum : position;
+  for (std::size_t i = 0; quantum > 0 && i < measured_.size(); ++i) {
+    // The motor of an elastic joint may have turned further.
+    const double position =
+        robot_.joints[i].kind == JointKind::revolute ? wrap_angle(measured_[i]) : measured_[i];
+    measured_[i] = std::nearbyint(position / quantum) * quantum;
   }
   return measured_;
 }

@@ -1,5 +1,5 @@
 // One tracking simulation, written once for every engine that steps a single arm: the timeline, the
-// controllers and the measures. An `Arm` needs the member functions step(effort, dt),
+// controllers and the measures. An `Arm` needs the member functions step(effort, dt, inertia),
 // read_positions(q), read_rates(qd), tip_position_m() and tool_point_m(point). It throws
 // DivergenceError if it cannot be stepped any further.
 #pragma once
@@ -28,7 +28,7 @@ class ArmPlant {
   // joints' state at its start. Moves the motors of elastic joints to its end.
   void act(std::span<const double> effort, std::span<const double> q, std::span<const double> qd);
   // Return the efforts (N m or N) on the links, and the inertia (kg m^2 or kg) that joins each
-  // joint. It is empty if no joint has any.
+  // joint. It is empty if the robot's joints are ideal.
   std::span<const double> effort() const { return acting_effort_; }
   std::span<const double> inertia() const { return inertia_; }
   // Stores the joint positions that a substep ended with.

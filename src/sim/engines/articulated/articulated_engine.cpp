@@ -43,7 +43,8 @@ bool have_same_drives(const RobotModel& a, const RobotModel& b) {
     const JointPlant& its = a.joints[i].plant;
     const JointPlant& other = b.joints[i].plant;
     if (get_drive_flags(its) != get_drive_flags(other) ||
-        its.counterbalance != other.counterbalance) {
+        its.counterbalance != other.counterbalance || a.joints[i].lower != b.joints[i].lower ||
+        a.joints[i].upper != b.joints[i].upper) {
       return false;
     }
   }

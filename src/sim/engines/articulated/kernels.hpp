@@ -62,7 +62,7 @@ enum PlantField : int {
   kDamping,
   kPlantFields
 };
-// Of a perturbation.
+// The numbers of a perturbation.
 enum PlantSingle : int {
   kRateScale,     // 1 / v_s
   kRippleCycles,  // per turn
@@ -70,7 +70,7 @@ enum PlantSingle : int {
   kPlantSingles
 };
 
-// What a joint's plant consists of; the same in all lanes.
+// The parts of a joint's plant, the same in all lanes.
 enum DriveFlag : std::uint8_t {
   kHasArmature = 1,
   kHasFriction = 2,
@@ -134,9 +134,6 @@ struct SegmentCall {
   const T* plant = nullptr;               // calc_plant_packs() packs
   const std::uint8_t* drives = nullptr;   // DriveFlag bits, one byte per joint
   const BalanceGrid* balances = nullptr;  // one per joint, the same in all lanes
-  bool has_friction = false;              // a joint has
-  bool has_stribeck = false;              // likewise; then has_friction is true
-  bool has_rare_parts = false;            // perturbed, or a joint is elastic
   bool measures_apart = false;            // measured positions are not the joints' true ones
   // The following four are for perturbed plants. `past` is null for others.
   T* past = nullptr;           // a ring of `past_length` x joints packs: the positions of the

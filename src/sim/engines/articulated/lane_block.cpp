@@ -191,7 +191,7 @@ void LaneBlock<T>::reserve_plants(std::span<const std::size_t> chosen, std::size
   }
   for (const Joint& joint : setup_of(chosen.front()).robot().joints) {
     drives_.push_back(get_drive_flags(joint.plant));
-    balances_.push_back(make_balance_grid(joint.plant.counterbalance));
+    balances_.push_back(make_balance_grid(joint));
   }
   plant_size_ = calc_size(calc_plant_packs(static_cast<int>(joints_)), kernel_.lanes);
   plants_ = AlignedNumbers<T>(groups * plant_size_);

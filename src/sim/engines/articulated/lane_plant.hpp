@@ -10,7 +10,7 @@
 
 namespace armwright::articulated {
 
-// What the plants of a pack of lanes do in a step. The functions loop over the joints and are not
+// The steps of the plants of a pack of lanes. The functions loop over the joints and are not
 // inlined: the kernels are so long that the processor would run out of decoded instructions.
 template <class V>
 class PlantStep {

@@ -224,7 +224,7 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
         plant[static_cast<std::size_t>(field * n + i)] = V(value);
       });
       flags.push_back(get_drive_flags(its));
-      balances.push_back(make_balance_grid(its.counterbalance));
+      balances.push_back(make_balance_grid(joints[static_cast<std::size_t>(i)]));
     }
   }
   V* const singles = state.data() + kStateFields * n;
