@@ -437,6 +437,7 @@ TargetTable make_swing(const RobotModel& robot, int steps) {
   segment.steps = steps;
   segment.window_start = steps - 1;
   segment.duration_s = 0.01 * steps;
+  segment.from_m = segment.to_m = Vector3d::Zero();
   table.segments = {segment};
   return table;
 }
