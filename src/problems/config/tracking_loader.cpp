@@ -51,11 +51,13 @@ const Setting<double> kRobotFrictionScale{"friction_scale",
                                           {.lower = 0, .upper = 100},
                                           PlantScales{}.friction,
                                           "factor on all friction of the robot's joints"};
-const Setting<double> kRobotArmatureScale{"armature_scale", kPlantFactor, PlantScales{}.armature,
-                                          "factor on the armatures of the robot's joints"};
+const Setting<double> kRobotArmatureScale{
+    "armature_scale", kPlantFactor, PlantScales{}.armature,
+    "factor on the armatures of the robot's joints, also on those of armature_share"};
 const Setting<double> kRobotStiffnessScale{
     "stiffness_scale", kPlantFactor, PlantScales{}.stiffness,
-    "factor on the stiffness and damping of the robot's elastic joints"};
+    "factor on the stiffness and damping of the robot's elastic joints, also on those of "
+    "elastic_hz"};
 const Setting<double> kRobotArmatureShare{
     "armature_share",
     {.lower = 0, .upper = 10},

@@ -165,16 +165,17 @@ RobotModel scale_plants(RobotModel model, const PlantScales& scales) {
   for (std::size_t i = 0; i < model.joint_count(); ++i) {
     JointPlant& plant = model.joints[i].plant;
     scale_friction(plant, scales.friction);
-    plant.armature =
-        plant.armature > 0 ? scales.armature * plant.armature : scales.armature_share * inertias[i];
-    if (plant.is_elastic()) {
-      plant.stiffness *= scales.stiffness;
-      plant.damping *= scales.stiffness;
-    } else if (scales.elastic_hz > 0) {
+    if (plant.armature == 0) {
+      plant.armature = scales.armature_share * inertias[i];
+    }
+    if (!plant.is_elastic() && scales.elastic_hz > 0) {
       const double rate = 2 * std::numbers::pi * scales.elastic_hz;  // rad/s
       plant.stiffness = rate * rate * plant.armature;
       plant.damping = 2 * kDampingRatio * rate * plant.armature;
     }
+    plant.armature *= scales.armature;
+    plant.stiffness *= scales.stiffness;
+    plant.damping *= scales.stiffness;
   }
   return model;
 }

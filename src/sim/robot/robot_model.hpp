@@ -133,11 +133,11 @@ class RobotOptionError final : public Error {
 // `base` become part of the fixed base. The world's frame is the root link's frame. The tip's frame
 // is the tool centre point.
 //
-// The reader uses the inertial and visual elements and the joints' origins, axes and limits, and
-// with `options.dynamics` their friction (joint_plant.hpp: damping is d, friction is c). An effort or velocity limit of 0 is a placeholder and means no limit. If `options.density_kg_per_m3`
-// is positive, each moving link without <inertial> gets the mass properties of its visual shapes
-// (shape_mass.hpp). RobotModel::notes names these assumptions and all parts that are ignored
-// (docs/robots.md).
+// The reader uses the inertial and visual elements, the joints' origins, axes and limits, and with
+// `options.dynamics` their friction (damping is d, friction is c). A limit of 0 on effort or speed
+// is a placeholder and means no limit. With `options.density_kg_per_m3` > 0, each moving link
+// without <inertial> gets the mass properties of its visual shapes (shape_mass.hpp).
+// RobotModel::notes names these assumptions and all parts that are ignored (docs/robots.md).
 //
 // Throws RobotOptionError if
 // - the base or tip is not a link, or the base is not above the tip,
@@ -182,11 +182,11 @@ RobotModel add_load(RobotModel model, double mass_kg, const std::optional<LoadBo
 // density were changed. Throws Error{usage} if the factor is not finite and positive.
 RobotModel scale_masses(RobotModel model, double factor);
 
-// Changes of all joints' plants. The default changes nothing.
+// Changes of all joints' plants. The default changes nothing. Factors act after the additions.
 struct PlantScales {
   double friction = 1;   // factor on all friction, also on the offset
-  double armature = 1;   // factor on armatures
-  double stiffness = 1;  // factor on the stiffness and damping of elastic joints
+  double armature = 1;   // factor on armatures, also on those of armature_share
+  double stiffness = 1;  // factor on stiffness and damping, also on those of elastic_hz
   // A joint without armature gets this share of the inertia that it moves while the others are held
   // at the middles of their ranges (at 0 if they have none).
   double armature_share = 0;

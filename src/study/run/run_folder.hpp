@@ -75,6 +75,11 @@ void cover_run(const Folder& folder, bool has_ended);
 // damaged, and Error{io}.
 bool has_first_selection(const std::filesystem::path& folder);
 
+// Two settings with which a problem is what it was in version 1.0: the plain form of a function, and
+// the solver of the numeric inverse kinematics.
+inline constexpr const char* kPlainForm = "function.instance=0";
+inline constexpr const char* kScalarSolver = "task.solver=scalar";
+
 // Returns the settings that the run in the folder needs in addition to `settings`, with which
 // `problem` was loaded: those with which a problem is what it was in version 1.0. These are the
 // plain form of a function, the scalar solver of the numeric inverse kinematics, and ideal joints.

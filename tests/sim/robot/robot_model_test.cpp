@@ -469,6 +469,25 @@ TEST(ScalePlants, MultipliesWhatIsThere) {
   EXPECT_TRUE(changed.joints[0].plant.is_ideal());
 }
 
+// A rotor that is made lighter keeps its spring: the factors are powers of two, so they are exact.
+TEST(ScalePlants, FactorsActOnWhatTheShareAndTheFrequencyAdd) {
+  const RobotModel arm = load_irb4600();
+  const PlantScales added{.armature_share = 0.5, .elastic_hz = 15};
+  const RobotModel own = scale_plants(arm, added);
+  PlantScales changes = added;
+  changes.armature = 0.5;
+  changes.stiffness = 0.25;
+  const RobotModel changed = scale_plants(arm, changes);
+  for (std::size_t i = 0; i < arm.joint_count(); ++i) {
+    const JointPlant& before = own.joints[i].plant;
+    const JointPlant& after = changed.joints[i].plant;
+    EXPECT_GT(before.armature, 0);
+    EXPECT_EQ(after.armature, 0.5 * before.armature);
+    EXPECT_EQ(after.stiffness, 0.25 * before.stiffness);
+    EXPECT_EQ(after.damping, 0.25 * before.damping);
+  }
+}
+
 TEST(ScaleMasses, ScalesWhatMovesAndNothingElse) {
   const RobotModel arm = load_irb4600();
   const RobotModel heavy = scale_masses(arm, 1.25);
