@@ -1,6 +1,7 @@
 // Values of a configuration as canonical JSON, and values made of settled numbers and texts.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -26,6 +27,28 @@ void append_array(const Value& array, std::string_view key, const Value& settled
     append_json(array.items[i], found == settled.keys.end() ? nullptr : found->second.get(), out);
   }
   out += ']';
+}
+
+// Returns whether only keys that are left out stand in the file and in what was settled. Either may
+// be null. An empty table in the file stays in the record.
+bool is_left_out(const Value* own, const Value* settled) {
+  if (settled == nullptr || settled->is_left_out) {
+    return settled != nullptr;
+  }
+  if (settled->kind != Kind::table || settled->keys.empty() ||
+      (own != nullptr && (own->kind != Kind::table || own->keys.empty()))) {
+    return false;
+  }
+  const auto find_own = [&](const std::string& key) -> const Value* {
+    return own != nullptr && own->keys.contains(key) ? own->keys.at(key).get() : nullptr;
+  };
+  return std::ranges::all_of(settled->keys,
+                             [&](const auto& child) {
+                               return is_left_out(find_own(child.first), child.second.get());
+                             }) &&
+         (own == nullptr || std::ranges::all_of(own->keys, [&](const auto& child) {
+            return settled->keys.contains(child.first);
+          }));
 }
 
 }  // namespace
@@ -65,7 +88,9 @@ void append_json(const Value& value, const Value* settled, std::string& out) {
     case Kind::table: {
       std::map<std::string_view, std::pair<const Value*, const Value*>> both;
       for (const auto& [key, child] : value.keys) {
-        both[key].first = child.get();
+        if (!is_left_out(nullptr, child.get())) {
+          both[key].first = child.get();
+        }
       }
       if (settled != nullptr) {
         for (const auto& [key, child] : settled->keys) {
@@ -73,10 +98,10 @@ void append_json(const Value& value, const Value* settled, std::string& out) {
             continue;  // of a table in an array
           }
           both[key].second = child.get();
-          if (child->is_left_out) {
-            both.erase(key);
-          }
         }
+        std::erase_if(both, [](const auto& child) {
+          return is_left_out(child.second.first, child.second.second);
+        });
       }
       out += '{';
       for (const auto& [key, children] : both) {

@@ -398,6 +398,22 @@ TEST(Config, LeftOutKeysAreMissingInTheJsonOnly) {
   EXPECT_EQ(task.get(text("speed")), "auto");
 }
 
+// A file without the table and a file with nothing but the key have the same record.
+TEST(Config, TablesWithLeftOutKeysOnlyAreMissingInTheJson) {
+  for (const char* file : {"a = 1\n", "a = 1\n[task]\nspeed = 'auto'\n"}) {
+    const ConfigTable config = parse(file);
+    const ConfigTable task = config.get_table_or_empty(table("task"));
+    task.leave_out(text("speed"));
+    task.leave_out(text("gone"));
+    EXPECT_EQ(config.to_json(), R"({"a":1})");
+    task.settle(text("name"), "x");
+    EXPECT_EQ(config.to_json(), R"({"a":1,"task":{"name":"x"}})");
+  }
+  const ConfigTable empty = parse("[task]\n");
+  empty.get_table(table("task")).leave_out(text("speed"));
+  EXPECT_EQ(empty.to_json(), R"({"task":{}})");
+}
+
 TEST(Config, SettlesWhatAnotherDocumentHasAndThisOneLacks) {
   const ConfigTable config = parse("[plant]\na = 1\n");
   const ConfigTable plant = config.get_table(table("plant"));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/folder.hpp"
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/problem_readers.hpp"
@@ -49,10 +50,6 @@ const Setting<double> kPlantFrictionTransition{
     {.lower = 1e-6, .upper = 1e3},
     Perturbation{}.friction_transition_rad_per_s,
     "speed from which on Coulomb friction has its full size"};
-const Setting<std::vector<std::string>> kPlantRobots{
-    "robots", kNoDefault,
-    "names of the robots that load_kg and the numbers per joint are for. Another robot gets the "
-    "shares in their place (default, and []: all robots get both)"};
 const Setting<std::vector<double>> kPlantLoadShare{
     "load_share",
     {.lower = 0, .upper = 10},
@@ -135,67 +132,23 @@ Interval read_interval(const ConfigTable& table, const Setting<std::vector<doubl
   return std::pair(values->at(0), values->at(1));
 }
 
-const std::vector<const AnySetting*>& list_own_settings() {
-  static const std::vector<const AnySetting*> settings = {&kPlantLoad, &kPlantViscousFriction,
-                                                          &kPlantCoulombFriction};
-  return settings;
-}
-
-const std::vector<const AnySetting*>& list_share_settings() {
-  static const std::vector<const AnySetting*> settings = {&kPlantLoadShare, &kPlantViscousShare,
-                                                          &kPlantCoulombShare};
-  return settings;
-}
-
-// Returns the settings that are not for this robot.
-std::vector<const AnySetting*> list_unused(const ConfigTable& table, const std::string& robot) {
-  const auto robots = table.find(kPlantRobots);
-  if (!robots || robots->empty()) {
-    return {};
-  }
-  return std::ranges::find(*robots, robot) == robots->end() ? list_own_settings()
-                                                            : list_share_settings();
-}
-
 std::string get_place(Perturbation::Where where) {
   return kPlantApplyTo.choices()[static_cast<std::size_t>(where)];
 }
 
-// Sets the loads and frictions in `p` that are for this robot.
+// Sets the loads and frictions in `p`.
 void read_sizes(const ConfigTable& table, const PerturbedRobot& robot, Perturbation& p) {
-  const std::vector<const AnySetting*> unused = list_unused(table, robot.model.name);
-  const auto is_used = [&](const AnySetting& setting) {
-    table.has(setting);  // known, whether it is used or not
-    return std::ranges::find(unused, &setting) == unused.end();
-  };
   const std::size_t joints = robot.model.joint_count();
-  if (is_used(kPlantLoad)) {
-    p.load_kg = read_interval(table, kPlantLoad, p.load_kg);
-  }
-  if (is_used(kPlantViscousFriction)) {
-    p.viscous_friction_n_m_s_per_rad =
-        read_joints(table, kPlantViscousFriction, joints, p.viscous_friction_n_m_s_per_rad);
-  }
-  if (is_used(kPlantCoulombFriction)) {
-    p.coulomb_friction_n_m =
-        read_joints(table, kPlantCoulombFriction, joints, p.coulomb_friction_n_m);
-  }
-  if (is_used(kPlantLoadShare)) {
-    p.load_share = read_interval(table, kPlantLoadShare, p.load_share);
-  }
-  if (is_used(kPlantViscousShare)) {
-    p.viscous_friction_share = table.get_or(kPlantViscousShare, p.viscous_friction_share);
-  }
-  if (is_used(kPlantCoulombShare)) {
-    p.coulomb_friction_share = table.get_or(kPlantCoulombShare, p.coulomb_friction_share);
-  }
-  const bool has_kg = is_used(kPlantLoad) && table.has(kPlantLoad);
-  const bool has_share = is_used(kPlantLoadShare) && table.has(kPlantLoadShare);
-  if (has_kg && has_share && p.load_kg && p.load_share) {
+  p.load_kg = read_interval(table, kPlantLoad, p.load_kg);
+  p.viscous_friction_n_m_s_per_rad =
+      read_joints(table, kPlantViscousFriction, joints, p.viscous_friction_n_m_s_per_rad);
+  p.coulomb_friction_n_m =
+      read_joints(table, kPlantCoulombFriction, joints, p.coulomb_friction_n_m);
+  p.load_share = read_interval(table, kPlantLoadShare, p.load_share);
+  p.viscous_friction_share = table.get_or(kPlantViscousShare, p.viscous_friction_share);
+  p.coulomb_friction_share = table.get_or(kPlantCoulombShare, p.coulomb_friction_share);
+  if (p.load_kg && p.load_share && table.has(kPlantLoad)) {
     table.refuse(kPlantLoadShare, "load_kg is given, too; give one of the two");
-  }
-  if (has_kg && !has_share) {
-    p.load_share.reset();  // it was that of the preset
   }
   if (p.load_share) {
     const double mass_kg = calc_moving_mass_kg(robot.model);
@@ -240,10 +193,60 @@ Perturbation read_keys(const ConfigTable& table, const PerturbedRobot& robot, Pe
   return p;
 }
 
+// Names the robots that the numbers of the presets in a folder are made for.
+constexpr const char* kPresetRobotsFile = "_robots.toml";
+const Setting<std::vector<std::string>> kPresetRobots{
+    "robots", kNoDefault, "names of the robots that the numbers of these presets are made for"};
+const SettingTable kPresetRobotsSettings{.key = "", .settings = {&kPresetRobots}};
+
+// Returns the file of a preset that is for the robot: _NAME.toml beside NAME.toml, if there is one
+// and _robots.toml does not name the robot.
+std::filesystem::path find_preset(const std::filesystem::path& file, const RobotModel& robot) {
+  const auto other = file.parent_path() / ("_" + file.filename().string());
+  const auto list = file.parent_path() / kPresetRobotsFile;
+  if (!path_exists(other) || !path_exists(list)) {
+    return file;
+  }
+  const ConfigTable table = ConfigTable::load(kPresetRobotsSettings, list);
+  const std::vector<std::string> robots = table.get(kPresetRobots);
+  table.refuse_unknown();
+  return std::ranges::find(robots, robot.name) == robots.end() ? other : file;
+}
+
 Perturbation load_preset(const ConfigTable& preset, const PerturbedRobot& robot) {
   Perturbation perturbation = read_keys(preset, robot, {});
   preset.refuse_unknown();
   return perturbation;
+}
+
+// Removes from the preset's `p`, and from the record, a load or friction that a key beside the
+// preset states in the other form: as a share, or as numbers in kg and per joint.
+void replace_other_forms(const ConfigTable& table, Perturbation& p) {
+  const auto replaces = [&](const AnySetting& stated, const AnySetting& other) {
+    if (!table.has(stated) || table.has(other)) {
+      return false;
+    }
+    table.leave_out(other);
+    return true;
+  };
+  if (replaces(kPlantLoad, kPlantLoadShare)) {
+    p.load_share.reset();
+  }
+  if (replaces(kPlantLoadShare, kPlantLoad)) {
+    p.load_kg.reset();
+  }
+  if (replaces(kPlantViscousFriction, kPlantViscousShare)) {
+    p.viscous_friction_share = 0;
+  }
+  if (replaces(kPlantViscousShare, kPlantViscousFriction)) {
+    p.viscous_friction_n_m_s_per_rad.clear();
+  }
+  if (replaces(kPlantCoulombFriction, kPlantCoulombShare)) {
+    p.coulomb_friction_share = 0;
+  }
+  if (replaces(kPlantCoulombShare, kPlantCoulombFriction)) {
+    p.coulomb_friction_n_m.clear();
+  }
 }
 
 std::string write_list(const std::vector<double>& values) {
@@ -256,21 +259,30 @@ std::string write_list(const std::vector<double>& values) {
 
 }  // namespace
 
-const SettingTable kPerturbationSettings{
-    .key = "perturbation", .settings = {&kPlantPreset,          &kPlantSet,
-                                        &kPlantApplyTo,         &kPlantMass,
-                                        &kPlantRobots,          &kPlantLoad,
-                                        &kPlantLoadShare,       &kPlantViscousFriction,
-                                        &kPlantCoulombFriction, &kPlantFrictionTransition,
-                                        &kPlantViscousShare,    &kPlantCoulombShare,
-                                        &kPlantFriction,        &kPlantArmature,
-                                        &kPlantStiffness,       &kPlantQuantisation,
-                                        &kPlantDelay,           &kPlantRipple,
-                                        &kPlantRippleCycles,    &kPlantEffortSigma,
-                                        &kPlantGainSigma}};
+const SettingTable kPerturbationSettings{.key = "perturbation",
+                                         .settings = {&kPlantPreset,
+                                                      &kPlantSet,
+                                                      &kPlantApplyTo,
+                                                      &kPlantMass,
+                                                      &kPlantLoad,
+                                                      &kPlantLoadShare,
+                                                      &kPlantViscousFriction,
+                                                      &kPlantCoulombFriction,
+                                                      &kPlantFrictionTransition,
+                                                      &kPlantViscousShare,
+                                                      &kPlantCoulombShare,
+                                                      &kPlantFriction,
+                                                      &kPlantArmature,
+                                                      &kPlantStiffness,
+                                                      &kPlantQuantisation,
+                                                      &kPlantDelay,
+                                                      &kPlantRipple,
+                                                      &kPlantRippleCycles,
+                                                      &kPlantEffortSigma,
+                                                      &kPlantGainSigma}};
 
 Perturbation load_perturbation(const std::string& preset, const PerturbedRobot& robot) {
-  const auto file = resolve_config("perturbations", preset);
+  const auto file = find_preset(resolve_config("perturbations", preset), robot.model);
   return load_preset(ConfigTable::load(kPerturbationSettings, file), robot);
 }
 
@@ -284,7 +296,6 @@ std::vector<std::string> make_overrides(const Perturbation& p) {
       {&kPlantSet, p.set},
       {&kPlantApplyTo, get_place(p.where)},
       {&kPlantMass, format_exact(p.mass_relative)},
-      {&kPlantRobots, "[]"},
       {&kPlantLoad, write_interval(p.load_share ? Interval() : p.load_kg)},
       {&kPlantLoadShare, write_interval(p.load_share)},
       {&kPlantViscousFriction, write_list(p.viscous_friction_n_m_s_per_rad)},
@@ -312,19 +323,12 @@ Perturbation read_perturbation(const ConfigTable& table, const PerturbedRobot& r
                                LoadedProblem& loaded) {
   Perturbation perturbation;
   if (!table.get(kPlantPreset).empty()) {
-    const auto file = resolve_named(table, kPlantPreset, "perturbations");
+    const auto file = find_preset(resolve_named(table, kPlantPreset, "perturbations"), robot.model);
     const ConfigTable preset = ConfigTable::load(kPerturbationSettings, file);
     perturbation = load_preset(preset, robot);
     table.settle(kPlantPreset, "");
     table.settle_missing(preset);
-    // The record holds what counts for this robot.
-    std::vector<const AnySetting*> left_out = list_unused(preset, robot.model.name);
-    left_out.push_back(&kPlantRobots);
-    for (const AnySetting* setting : left_out) {
-      if (!table.has(*setting)) {
-        table.leave_out(*setting);
-      }
-    }
+    replace_other_forms(table, perturbation);
     add_input(loaded, file);
   }
   return read_keys(table, robot, perturbation);

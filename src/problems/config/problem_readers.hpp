@@ -209,9 +209,10 @@ void read_variables(const ConfigTable& variables, const ConfigTable& control,
 // perturbation_reader.cpp: [perturbation] (perturbation.hpp)
 //
 // preset = NAME names a file with the same keys: a shipped one in configs/perturbations, or a path.
-// Keys beside it replace the keys of the preset. An empty list stands for none; of load_kg it
-// stands for the task's own load. A file with `robots` has loads in kg and numbers per joint for
-// the robots of these names, and shares for all others.
+// Keys beside it replace the keys of the preset; a load or friction there also replaces the
+// preset's other form of it, which is a share or numbers in kg and per joint. An empty list stands
+// for none; of load_kg it stands for the task's own load. If NAME.toml has a file _NAME.toml beside
+// it, that file is for all robots but those that _robots.toml beside it names.
 
 extern const SettingTable kPerturbationSettings;
 
@@ -222,11 +223,12 @@ struct PerturbedRobot {
   const ArmDesign& start;
 };
 
-// Reads a preset by itself: the name of a shipped file, or a path.
+// Reads the preset for the robot by itself: the name of a shipped file, or a path.
 Perturbation load_perturbation(const std::string& preset, const PerturbedRobot& robot);
 // Returns all keys as KEY=VALUE texts, which replace every key of a problem's table.
 std::vector<std::string> make_overrides(const Perturbation& perturbation);
-// Settles the values of a preset, and no preset. Records the preset's file as an input of `loaded`.
+// Settles the values of a preset, and no preset. Records the file that was read for the robot as an
+// input of `loaded`.
 Perturbation read_perturbation(const ConfigTable& table, const PerturbedRobot& robot,
                                LoadedProblem& loaded);
 
