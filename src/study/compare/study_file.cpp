@@ -125,19 +125,23 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
 }
 
 // Loads the problem as it was when the plan was made: on another SIMD level, because "auto" may
-// choose another one on this machine, or as the plain form of a function or with the scalar solver of
-// the inverse kinematics, the only ones before version 2.0. Returns false if none of these gives the
-// recorded configuration.
+// choose another one on this machine, or as the plain form of a function, with the scalar solver of
+// the inverse kinematics, or with ideal joints, as in version 1.0. Returns false if none of these
+// gives the recorded configuration.
 bool load_as_recorded(const NamedProblem& named, StudyProblem& problem) {
   std::vector<std::vector<std::string>> variants;
   if (problem.loaded.function) {
     variants = {{kPlainForm}};
   } else if (problem.loaded.tracking()) {
-    variants = {{kScalarSolver}};
+    variants = {{kScalarSolver}, {kNoDynamics, kNoPlant}, {kScalarSolver, kNoDynamics, kNoPlant}};
+    const std::vector<std::vector<std::string>> old = variants;
     for (const std::string& level : supported_simd_names()) {
       const std::string simd = "physics.simd=" + level;
       variants.push_back({simd});
-      variants.push_back({simd, kScalarSolver});
+      for (std::vector<std::string> settings : old) {
+        settings.push_back(simd);
+        variants.push_back(std::move(settings));
+      }
     }
   }
   for (const std::vector<std::string>& variant : variants) {

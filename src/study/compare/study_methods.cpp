@@ -86,6 +86,12 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
       problem.loaded.tracking()->setup().task().solver == NumericSolver::scalar) {
     settings.emplace_back(kScalarSolver);  // likewise
   }
+  if (problem.loaded.tracking() != nullptr && !resolved["robot"].contains("dynamics")) {
+    settings.emplace_back(kNoDynamics);  // likewise
+  }
+  if (problem.loaded.tracking() != nullptr && !resolved["robot"].contains("plant")) {
+    settings.emplace_back(kNoPlant);
+  }
   LoadedProblem loaded = load_for_method(problem, optimizer, settings, programs);
   if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {
     throw Error(ErrorKind::usage,

@@ -295,19 +295,20 @@ std::vector<std::string> find_old_settings(const std::filesystem::path& folder,
   const json recorded = find(read_manifest(folder / "manifest.json"), "/configuration/problem");
   const auto lacks = [&](const char* key) { return find(recorded, key).is_null(); };
   std::vector<std::string> old;
-  const auto add = [&](bool is_needed, const std::string& key, const std::string& value) {
+  const auto add = [&](bool is_needed, const std::string& needed) {
+    const std::string key = needed.substr(0, needed.find('='));
     const bool is_named = std::ranges::any_of(settings, [&](const std::string& setting) {
       const std::size_t begin = setting.find_first_not_of(' ');
       const std::size_t end = setting.find_first_of(" =", begin);
       return begin != std::string::npos && setting.substr(begin, end - begin) == key;
     });
     if (is_needed && !is_named) {
-      old.push_back(key + "=" + value);
+      old.push_back(needed);
     }
   };
   if (arm == nullptr) {
     add(find(recorded, "/function/name") == problem.function->name && lacks("/function/instance"),
-        "function.instance", "0");
+        kPlainForm);
     return old;
   }
   if (!find(recorded, "/robot").is_object()) {
@@ -315,9 +316,9 @@ std::vector<std::string> find_old_settings(const std::filesystem::path& folder,
   }
   const bool is_numeric = !arm->setup().has_closed_form();
   add(is_numeric && arm->setup().task().solver == NumericSolver::lanes && lacks("/task/solver"),
-      "task.solver", "scalar");
-  add(arm->config().own_effort_limits && lacks("/robot/dynamics"), "robot.dynamics", "false");
-  add(arm->config().own_effort_limits && lacks("/robot/plant"), "robot.plant", "\"\"");
+      kScalarSolver);
+  add(arm->config().own_effort_limits && lacks("/robot/dynamics"), kNoDynamics);
+  add(arm->config().own_effort_limits && lacks("/robot/plant"), kNoPlant);
   return old;
 }
 
