@@ -148,18 +148,101 @@ TEST_F(Verify, PrintsATableAndAConclusion) {
   EXPECT_THAT(outcome.err, HasSubstr("--problem is not given; using q2-e6"));
 }
 
-// An arm of 7 joints: its loads are shares of its mass, and a plant that does not suit it costs a row
-// and not the command.
+// An arm of 7 joints, with elastic joints that one substep cannot simulate.
+const std::vector<std::string> kElasticArm7 = {"start",
+                                               "--robot",
+                                               "arm7",
+                                               "--cases",
+                                               "1",
+                                               "--engines",
+                                               "articulated",
+                                               "--set",
+                                               "robot.armature_share=0.5",
+                                               "--set",
+                                               "robot.elastic_hz=15"};
+
+std::vector<std::string> operator+(std::vector<std::string> some,
+                                   const std::vector<std::string>& more) {
+  some.insert(some.end(), more.begin(), more.end());
+  return some;
+}
+
+// Its loads are shares of its mass, and a setting that cannot be simulated costs a row and not the
+// command, also if the user named the preset.
 TEST_F(Verify, EndsForEveryRobotAndSaysWhatCouldNotBeSimulated) {
   const Outcome outcome =
-      run({"verify", "start", "--robot", "arm7", "--cases", "1", "--engines", "articulated",
-           "--substeps", "10", "--perturbations", "none,friction,load-0-40,lighter-rotors"});
+      run(std::vector<std::string>{"verify"} + kElasticArm7 +
+          std::vector<std::string>{"--substeps", "1,10", "--perturbations", "none,load-0-40"});
   EXPECT_THAT(outcome.exit_code, testing::AnyOf(0, 3)) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("articulated, 10 substeps, load-0-40: 0 to 1.98 kg"));
+  EXPECT_THAT(outcome.out, HasSubstr("2 settings could not be simulated."));
   EXPECT_THAT(outcome.out,
-              HasSubstr("articulated, 10 substeps, rotors -50 %: no joint of the robot "
-                        "has an armature (robot.plant); try added-rotors"));
-  EXPECT_THAT(outcome.out, ContainsRegex("rotors -50 % +- +- +- +- +- +not simulated"));
+              ContainsRegex("articulated, 1 substep, load-0-40: .*physics.substeps is 1; the "
+                            "spring of joint '[^']*' .stiffness "));
+  EXPECT_THAT(outcome.out, ContainsRegex(" 1  load-0-40 +- +- +- +- +- +not simulated"));
+}
+
+// The factors of other plants act on armatures and springs that the problem's settings add.
+TEST_F(Verify, OtherPlantsDifferFromThoseThatSettingsMake) {
+  const json verified = json::parse(
+      run(std::vector<std::string>{"verify"} + kElasticArm7 +
+          std::vector<std::string>{"--substeps", "10", "--perturbations",
+                                   "lighter-rotors,heavier-rotors,softer", "--json", "-q"})
+          .out);
+  std::set<double> errors_m;
+  for (const json& row : verified["rows"]) {
+    errors_m.insert(row["mean_error_m"].get<double>());
+  }
+  EXPECT_EQ(verified["rows"].size(), 4U);
+  EXPECT_EQ(errors_m.size(), 4U);
+}
+
+// With the fewest substeps that the own springs allow, lighter masses need more of them. Two
+// numbers of substeps that are too few give one row.
+TEST_F(Verify, GivesSpringsTheirSubsteps) {
+  const Outcome refused = run({"evaluate", "start", "--robot", "arm7", "--cases", "1", "--set",
+                               "robot.armature_share=0.5", "--set", "robot.elastic_hz=100", "--set",
+                               "physics.substeps=1"});
+  EXPECT_EQ(refused.exit_code, 2);
+  const std::string words = "set physics.substeps to ";
+  const std::size_t at = refused.err.find(words);
+  ASSERT_NE(at, std::string::npos) << refused.err;
+  const int needed = std::stoi(refused.err.substr(at + words.size()));
+  const json verified =
+      json::parse(run({"verify",          "start",
+                       "--robot",         "arm7",
+                       "--cases",         "1",
+                       "--engines",       "articulated",
+                       "--set",           "robot.armature_share=0.5",
+                       "--set",           "robot.elastic_hz=100",
+                       "--set",           "physics.substeps=" + std::to_string(needed),
+                       "--substeps",      std::to_string(needed),
+                       "--perturbations", "lighter,heavier,masses-10",
+                       "--json",          "-q"})
+                      .out);
+  ASSERT_EQ(verified["rows"].size(), 4U);
+  for (const json& row : verified["rows"]) {
+    EXPECT_NE(row["verdict"], "not simulated") << row;
+    EXPECT_GE(row["substeps"], needed);
+  }
+  const json rotors =
+      json::parse(run({"verify", "start", "--robot", "arm7", "--cases", "1", "--engines",
+                       "articulated", "--set", "physics.substeps=1", "--substeps", "1,2",
+                       "--perturbations", "elastic-rotors", "--json", "-q"})
+                      .out);
+  EXPECT_EQ(rotors["rows"].size(), 2U);
+  EXPECT_GT(rotors["rows"][1]["substeps"], 2);
+  EXPECT_THAT(rotors["conclusion"].get<std::string>(), HasSubstr("with elastic, rotors added"));
+}
+
+TEST_F(Verify, HoldsNeitherWayIfNoOtherSettingIsSimulated) {
+  const json verified = verify(
+      kElasticArm7 + std::vector<std::string>{"--substeps", "1", "--perturbations", "none"}, 3);
+  EXPECT_TRUE(verified["holds"].is_null());
+  const json& missing = verified["rows"][1];
+  EXPECT_EQ(missing["verdict"], "not simulated");
+  EXPECT_TRUE(missing["failures"].is_null());
+  EXPECT_TRUE(missing["without_number"].is_null());
 }
 
 // Soft controllers hardly notice the time step, and this workspace asks little of them.
@@ -186,6 +269,11 @@ TEST_F(Verify, ExplainsItselfAndRefusesWhatIsWrong) {
   refuse({"verify", "table-a5", "--substeps", "1,0"}, "--substeps is '0'");
   refuse({"verify", "table-a5", "--engines", "od"}, "did you mean 'ode'?");
   refuse({"verify", "table-a5", "--perturbations", "none,fricton"}, "did you mean 'friction'?");
+  refuse({"verify", "start", "--robot", "arm7", "--perturbations", "none,lighter-rotors"},
+         "--perturbations has 'lighter-rotors': no joint of the robot has an armature "
+         "(robot.plant); try added-rotors");
+  refuse({"verify", "start", "--robot", "arm7", "--perturbations", "none,absent.toml"},
+         "absent.toml");
   refuse({"evaluate", "table-a5", "--set", "robot.mass_scale=0"},
          "robot.mass_scale is 0; it must be a finite number >= 0.01 and <= 100");
 }

@@ -32,6 +32,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kUsualCases = 50;
+constexpr int kMostSubsteps = 1000;  // that physics.substeps may have
 
 constexpr const char* kVerifyExamples = R"(Examples:
   armwright verify table-a10                       # a published design, on the problem it was made for
@@ -45,17 +46,19 @@ physics per control period (physics.substeps); and all masses and inertias of th
 (robot.mass_scale). It also simulates the design in its own engine and time step on perturbed plants, that is, arms that
 differ from the nominal one, with another plant for each case. It uses all shipped perturbations except those that
 weaken motors or change gains. Then it changes the friction, the rotors and the elasticity of the joints. With
---perturbations, the named plants are combined with all engines and substeps. A list that is not given keeps its default. Each setting is compared with the design's own setting, the problem as it is:
+--perturbations, the named plants are combined with all engines and substeps. A list that is not given keeps its
+default. Each setting is compared with the design's own setting, the problem as it is:
 
   holds   not more cases fail than in its own setting, and the median error is at most 1.1 times its own
   worse   not more cases fail than in its own setting, but the median error is larger than that
   fails   more cases fail, or the median error is more than 10 times its own or does not exist
 
-Elastic joints get as many substeps as their springs need. A setting that cannot be simulated has a row with the
-reason. It is no failure of the design.
+Another plant gets as many substeps as its springs need, and so does any plant with the design's own substeps. A
+setting that cannot be simulated has a row with the reason. It is no failure of the design.
 
 A failure is a case with an error above 100 mm or without a number. For the first failure of each setting, the command
-that simulates it again and writes its trajectory is printed. The exit code is 3 if any setting is worse or fails.)";
+that simulates it again and writes its trajectory is printed. The exit code is 3 if any setting is worse or fails, or if
+no other setting could be simulated.)";
 
 struct VerifyOptions {
   std::string design;
@@ -143,8 +146,14 @@ std::string format_text(const VerifiedDesign& verified, const Style& style) {
   return text;
 }
 
-bool holds(const VerifiedDesign& verified) {
-  return std::ranges::none_of(verified.rows, [](const VerifyRow& row) {
+// Returns nothing if no setting beside the design's own one was simulated.
+std::optional<bool> holds(const VerifiedDesign& verified) {
+  const std::span rows(verified.rows);
+  const auto is_missing = [](const VerifyRow& row) { return row.verdict == Verdict::missing; };
+  if (std::ranges::all_of(rows.subspan(1), is_missing)) {
+    return {};
+  }
+  return std::ranges::none_of(rows, [](const VerifyRow& row) {
     return row.verdict == Verdict::worse || row.verdict == Verdict::fails;
   });
 }
@@ -153,6 +162,9 @@ std::string format_json(const VerifiedDesign& verified) {
   json rows = json::array();
   for (std::size_t i = 0; i < verified.rows.size(); ++i) {
     const VerifyRow& row = verified.rows[i];
+    const auto count = [&](std::size_t number) {
+      return row.verdict == Verdict::missing ? json() : json(number);
+    };
     json one = {{"engine", row.setting.engine},
                 {"substeps", row.setting.substeps},
                 {"mass_factor", row.setting.mass_factor},
@@ -162,8 +174,8 @@ std::string format_json(const VerifiedDesign& verified) {
                 {"mean_error_m", to_json_value(row.summary.mean)},
                 {"median_error_m", to_json_value(row.summary.median)},
                 {"worst_error_m", to_json_value(row.summary.worst)},
-                {"failures", row.summary.failures},
-                {"without_number", row.summary.without_number},
+                {"failures", count(row.summary.failures)},
+                {"without_number", count(row.summary.without_number)},
                 {"median_ratio", to_json_value(row.ratio)},
                 {"verdict", to_string(row.verdict)}};
     if (!row.fault.empty()) {
@@ -180,6 +192,7 @@ std::string format_json(const VerifiedDesign& verified) {
     }
     rows.push_back(std::move(one));
   }
+  const std::optional<bool> verdict = holds(verified);
   return json{{"design", sanitize(verified.design)},
               {"problem", sanitize(verified.problem)},
               {"test_set", sanitize(verified.cases.set.name())},
@@ -187,7 +200,7 @@ std::string format_json(const VerifiedDesign& verified) {
               {"worse_ratio", kWorseRatio},
               {"fail_ratio", kFailRatio},
               {"rows", rows},
-              {"holds", holds(verified)},
+              {"holds", verdict ? json(*verdict) : json()},
               {"conclusion", conclude(sanitize(verified.design), verified.rows)}}
              .dump(1) +
          "\n";
@@ -316,6 +329,17 @@ std::vector<std::string> list_usual_plants(const TrackingConfig& config) {
   return plants;
 }
 
+// Throws Error if a plant that the user named does not suit the robot or cannot be read.
+void check_plant(const std::string& name, const TrackingConfig& config) {
+  if (const OtherPlant* other = find_other_plant(name)) {
+    if (!other->suits(config.robot)) {
+      throw Error(ErrorKind::usage, fmt::format("--perturbations has '{}': {}", name, other->lack));
+    }
+  } else if (std::ranges::find(kUsualPlants, name) == kUsualPlants.end()) {
+    load_perturbation(name, {config.robot, config.start});
+  }
+}
+
 VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& own,
                            const TrackingConfig& config) {
   VerifyMatrix matrix{engine_names(), kUsualSubsteps, kUsualPlants, {}};
@@ -329,7 +353,8 @@ VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& ow
   if (!options.substeps.empty()) {
     matrix.substeps.clear();
     for (const std::string& text : options.substeps) {
-      matrix.substeps.push_back(static_cast<int>(parse_count("--substeps", text, 1, 1000)));
+      matrix.substeps.push_back(
+          static_cast<int>(parse_count("--substeps", text, 1, kMostSubsteps)));
     }
   }
   if (options.perturbations.empty()) {
@@ -347,52 +372,62 @@ VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& ow
       throw Error(ErrorKind::usage,
                   describe_unknown("perturbation", name, known) + " (or the path of a .toml file)");
     }
+    check_plant(name, config);
   }
   matrix.plants = options.perturbations;
   return matrix;
 }
 
-// Gives a plant with springs the substeps that these need.
-void resolve_springs(const TrackingConfig& config, VerifySetting& setting) {
-  const OtherPlant* const other = find_other_plant(setting.perturbation);
-  if (other == nullptr) {
-    return;
-  }
-  const auto mode = find_fastest_mode(scale_plants(config.robot, other->changes));
-  if (mode) {
-    setting.substeps =
-        std::max(setting.substeps, count_substeps(*mode, config.task.control_period_s));
-  }
-}
-
 // The problem of one setting, or the reason why it cannot be made.
 struct PreparedSetting {
+  VerifySetting setting;  // with the substeps that its springs need
   std::vector<std::string> overrides;
   std::optional<LoadedProblem> problem;
   std::string fault;
 };
 
-// Throws Error if the fault is in a preset that the user named, or in the design's own setting.
+// Returns whether the setting may get more substeps than it names. A setting with another number
+// than the design's own one shows what that number does, unless its plant is another one.
+bool may_need_substeps(const VerifySetting& setting, const TrackingConfig& own) {
+  const OtherPlant* const other = find_other_plant(setting.perturbation);
+  if (other == nullptr && setting.substeps != own.task.physics.substeps) {
+    return false;
+  }
+  return (other != nullptr && other->changes.elastic_hz > 0) ||
+         std::ranges::any_of(own.robot.joints,
+                             [](const Joint& joint) { return joint.plant.is_elastic(); });
+}
+
+// Returns the substeps that the springs of the problem's plants need; 0 if they have none.
+int count_needed_substeps(const TrackingConfig& config) {
+  const auto mode = find_fastest_mode(make_fastest_arm(config.robot, config.perturbation));
+  return mode ? count_substeps(*mode, config.task.control_period_s) : 0;
+}
+
+// Throws Error if the fault is in the design's own setting, or if a file cannot be read.
 PreparedSetting prepare_setting(const VerifyOptions& options, const DesignFile& design,
                                 const std::string& named, const VerifySetting& setting,
                                 const LoadedProblem& base, bool is_own) {
-  PreparedSetting prepared;
-  const OtherPlant* other = find_other_plant(setting.perturbation);
-  if (other != nullptr && !other->suits(base.tracking()->config().robot)) {
-    prepared.fault = other->lack;
-    return prepared;
-  }
+  PreparedSetting prepared{setting, {}, {}, {}};
+  const auto load = [&](int substeps) {
+    prepared.setting.substeps = substeps;
+    prepared.overrides = list_overrides(options, prepared.setting, base);
+    return load_problem_of_design(design, named, prepared.overrides, true);
+  };
   try {
-    prepared.overrides = list_overrides(options, setting, base);
-    prepared.problem = load_problem_of_design(design, named, prepared.overrides, true);
+    int substeps = setting.substeps;
+    if (!is_own && may_need_substeps(setting, base.tracking()->config())) {
+      const LoadedProblem finest = load(kMostSubsteps);
+      const int needed = count_needed_substeps(finest.tracking()->config());
+      prepared.setting.springs = needed >= substeps;
+      substeps = std::max(substeps, needed);
+    }
+    prepared.problem = load(substeps);
   } catch (const Error& error) {
-    const bool is_named_preset =
-        !options.perturbations.empty() && other == nullptr &&
-        std::ranges::find(kUsualPlants, setting.perturbation) == kUsualPlants.end();
-    if (is_own || is_named_preset) {
+    if (is_own || error.kind() == ErrorKind::io) {
       throw;
     }
-    prepared.problem.reset();
+    prepared.setting = setting;
     prepared.fault = error.what();
   }
   return prepared;
@@ -410,23 +445,23 @@ int run_verify(const VerifyOptions& options, Session& session) {
     cases.count = std::min(cases.count, kUsualCases);
   }
   const VerifySetting own_setting = get_own_setting(tracking);
-  auto settings =
-      list_verify_settings(own_setting, choose_matrix(options, own_setting, tracking.config()));
-  for (VerifySetting& setting : settings) {
-    resolve_springs(tracking.config(), setting);
-  }
   // All settings are validated before the first is simulated.
   std::vector<PreparedSetting> prepared;
-  for (const VerifySetting& setting : settings) {
-    prepared.push_back(prepare_setting(options, design, named, setting, base, prepared.empty()));
+  for (const VerifySetting& setting :
+       list_verify_settings(own_setting, choose_matrix(options, own_setting, tracking.config()))) {
+    PreparedSetting one = prepare_setting(options, design, named, setting, base, prepared.empty());
+    // Springs can give two settings the same substeps.
+    if (std::ranges::find(prepared, one.setting, &PreparedSetting::setting) == prepared.end()) {
+      prepared.push_back(std::move(one));
+    }
   }
 
   catch_signals(session.stop);
   ProgressBar bar(options.quiet, {"error", "m"});
   VerifiedDesign verified{design.name, base.name, cases, {}, {}, {}, {}};
   Progress progress;
-  progress.total = cases.count * settings.size();
-  for (std::size_t i = 0; i < settings.size(); ++i) {
+  progress.total = cases.count * prepared.size();
+  for (std::size_t i = 0; i < prepared.size(); ++i) {
     PreparedSetting& one = prepared[i];
     std::optional<ErrorSurvey> survey;
     verified.loads_kg.emplace_back();
@@ -438,7 +473,7 @@ int run_verify(const VerifyOptions& options, Session& session) {
                                       session.stop, bar, progress);
       }
     } catch (const Error& error) {
-      if (i == 0) {
+      if (i == 0 || error.kind() == ErrorKind::io) {
         throw;
       }
       one.fault = error.what();
@@ -451,14 +486,14 @@ int run_verify(const VerifyOptions& options, Session& session) {
     }
     progress.done += cases.count;
     if (!survey) {
-      verified.rows.push_back(make_missing_row(settings[i], one.fault));
+      verified.rows.push_back(make_missing_row(one.setting, one.fault));
       verified.replays.emplace_back();
       verified.surveys.emplace_back();
       continue;
     }
     const ErrorSummary& own =
         verified.rows.empty() ? survey->summary : verified.rows.front().summary;
-    verified.rows.push_back(judge_setting(settings[i], survey->summary, own));
+    verified.rows.push_back(judge_setting(one.setting, survey->summary, own));
     verified.replays.push_back(survey->summary.failures == 0
                                    ? ""
                                    : make_replay(options, one.overrides, survey->first_failure));
@@ -467,7 +502,8 @@ int run_verify(const VerifyOptions& options, Session& session) {
   bar.clear();
   write_stdout(options.json ? format_json(verified)
                             : format_text(verified, make_style(Stream::out, session.color)));
-  return holds(verified) ? exit_code::kDone : exit_code::kFailed;
+  const bool has_others = verified.rows.size() > 1;
+  return holds(verified).value_or(!has_others) ? exit_code::kDone : exit_code::kFailed;
 }
 
 }  // namespace

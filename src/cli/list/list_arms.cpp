@@ -23,8 +23,8 @@ namespace {
 
 using nlohmann::json;
 
-// A robot as --robot loads it, with its friction and the plant of the file beside it. If the user must name a tip, the model ends at the tip
-// with the fewest joints.
+// A robot as --robot loads it, with its friction and the plant of the file beside it. If the user
+// must name a tip, the model ends at the tip with the fewest joints.
 struct ListedRobot {
   RobotModel model;
   std::vector<std::string> tips;  // the possible tips if the user must name one; otherwise empty

@@ -47,6 +47,19 @@ std::string describe_all(const Rows& rows, const std::string& preposition,
          list(Verdict::missing, "could not be simulated", false);
 }
 
+struct Counts {
+  std::size_t holding = 0, simulated = 0, missing = 0;
+};
+
+Counts count_verdicts(std::span<const VerifyRow> rows) {
+  Counts counts;
+  for (const VerifyRow& row : rows) {
+    counts.holding += row.verdict == Verdict::holds ? 1 : 0;
+    ++(row.verdict == Verdict::missing ? counts.missing : counts.simulated);
+  }
+  return counts;
+}
+
 bool is_bad(const VerifyRow& row) {
   return row.verdict == Verdict::worse || row.verdict == Verdict::fails;
 }
@@ -143,7 +156,7 @@ const std::vector<OtherPlant>& other_plants() {
        "no joint of the robot has an armature, or one is elastic (robot.plant); try "
        "elastic-rotors or softer"},
       {"elastic-rotors",
-       "elastic",
+       "elastic, rotors added",
        {.armature_share = kAddedArmatureShare, .elastic_hz = kElastic_hz},
        lacks_armature,
        "a joint of the robot has an armature; try elastic or softer"}};
@@ -207,7 +220,7 @@ std::string conclude(const std::string& design, std::span<const VerifyRow> rows)
   Rows engines, substeps, masses, plants, mixed;
   for (const VerifyRow& row : rows.subspan(1)) {
     const bool engine = row.setting.engine != own.setting.engine;
-    const bool steps = row.setting.substeps != own.setting.substeps;
+    const bool steps = !row.setting.springs && row.setting.substeps != own.setting.substeps;
     const bool mass = row.setting.mass_factor != own.setting.mass_factor;
     const bool plant = row.setting.perturbation != own.setting.perturbation;
     Rows& group = engine + steps + mass + plant > 1 ? mixed
@@ -217,9 +230,14 @@ std::string conclude(const std::string& design, std::span<const VerifyRow> rows)
                                                     : plants;
     group.push_back(row);
   }
-  const auto holding = std::ranges::count(rows.subspan(1), Verdict::holds, &VerifyRow::verdict);
-  std::string text = fmt::format("{} holds in {} of the {} settings beside its own.", design,
-                                 holding, rows.size() - 1);
+  const Counts all = count_verdicts(rows.subspan(1));
+  std::string text = all.simulated == 0
+                         ? fmt::format("{} was simulated in no setting beside its own.", design)
+                         : fmt::format("{} holds in {} of the {} settings beside its own.", design,
+                                       all.holding, all.simulated);
+  if (all.missing > 0) {
+    text += fmt::format(" {} could not be simulated.", format_count(all.missing, "setting"));
+  }
   const auto add = [&](const std::string& title, const Rows& group, const std::string& preposition,
                        const std::function<std::string(const VerifySetting&)>& name) {
     text +=
@@ -237,10 +255,9 @@ std::string conclude(const std::string& design, std::span<const VerifyRow> rows)
   add("Masses", masses, "with",
       [](const VerifySetting& s) { return fmt::format("{:+.0f} %", 100 * (s.mass_factor - 1)); });
   add("Other plants", plants, "with", describe_plant);
-  if (!mixed.empty()) {
-    const auto mixed_holding = std::ranges::count(mixed, Verdict::holds, &VerifyRow::verdict);
+  if (const Counts counts = count_verdicts(mixed); counts.simulated > 0) {
     text += fmt::format(" If several of these change at once, it holds in {} of {} settings.",
-                        mixed_holding, mixed.size());
+                        counts.holding, counts.simulated);
   }
   return text;
 }

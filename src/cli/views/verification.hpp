@@ -21,6 +21,9 @@ struct VerifySetting {
   // A preset of perturbed plants, "none" (kNoPerturbation), a name of other_plants(), or "" for the
   // problem's own plants.
   std::string perturbation = "none";
+  // Whether the substeps are the fewest that the springs of the plant allow. Then they are a part
+  // of the plant, and no change of the time step.
+  bool springs = false;
 
   bool operator==(const VerifySetting&) const = default;
 };

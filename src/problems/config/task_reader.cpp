@@ -93,8 +93,7 @@ const Setting<std::string> kTaskKinematics{
 const Setting<std::string> kTaskSolver{
     "solver", numeric_solver_names, "lanes",
     "how numeric inverse kinematics is computed; lanes: many times as fast; scalar: to the last "
-    "bit "
-    "as in version 1.0, whose recorded configurations lack this key"};
+    "bit as in version 1.0, whose recorded configurations lack this key"};
 const Setting<std::string> kTaskLimits{
     "limits", limit_policy_names, "ignore",
     "what happens if a path exceeds joint ranges or speeds, or meets singularities: nothing, a "

@@ -122,25 +122,40 @@ std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
   }
 }
 
-// Refuses, in [physics], steps that cannot simulate the swinging of an elastic joint.
-void check_elasticity(const ConfigTable& physics, const TrackingConfig& config) {
-  const auto mode = find_fastest_mode(config.robot);
+// Refuses, in [physics], steps that cannot simulate the swinging of an elastic joint. `plant` is the
+// robot's plant file, or empty.
+void check_elasticity(const ConfigTable& physics, const TrackingConfig& config,
+                      const std::filesystem::path& plant) {
+  const RobotModel fastest = make_fastest_arm(config.robot, config.perturbation);
+  const auto mode = find_fastest_mode(fastest);
   if (!mode) {
     return;
   }
   const double period_s = config.task.control_period_s;
   const int needed = count_substeps(*mode, period_s);
-  if (config.task.physics.substeps < needed) {
-    const double step_s = period_s / config.task.physics.substeps;
-    physics.refuse(
-        kPhysicsSubsteps,
-        fmt::format(
-            "the spring of joint '{}' moves at {:.4g} rad/s, which is {:.3g} rad per step of "
-            "{:.4g} s; at most {} rad can be simulated: set physics.substeps to {} or more, "
-            "or make the joint less stiff or less damped",
-            sanitize(config.robot.joints[mode->joint].name), mode->rate_rad_per_s,
-            mode->rate_rad_per_s * step_s, step_s, kMostTurnPerStep_rad, needed));
+  if (config.task.physics.substeps >= needed) {
+    return;
   }
+  const Joint& joint = config.robot.joints[mode->joint];
+  const double step_s = period_s / config.task.physics.substeps;
+  const double most = kPhysicsSubsteps.range.upper;
+  // One per cent less than the longest period: three digits may round it up.
+  const std::string advice =
+      needed <= most
+          ? fmt::format("set physics.substeps to {} or more", needed)
+          : fmt::format("set physics.substeps to {} and control.period_s to {:.3g} or less", most,
+                        0.99 * most * kMostTurnPerStep_rad / mode->rate_rad_per_s);
+  physics.refuse(
+      kPhysicsSubsteps,
+      fmt::format(
+          "the spring of joint '{}' (stiffness {:.6g} {}{}) moves at {:.4g} rad/s{}, which "
+          "is {:.3g} rad per step of {:.4g} s; at most {} rad can be simulated: {}, or make "
+          "the joint less stiff or less damped",
+          sanitize(joint.name), joint.plant.stiffness,
+          joint.kind == JointKind::prismatic ? "N/m" : "N m/rad",
+          plant.empty() ? "" : ", " + sanitize(plant.string()), mode->rate_rad_per_s,
+          config.perturbation.changes_arm() ? " in the fastest of the perturbed plants" : "",
+          mode->rate_rad_per_s * step_s, step_s, kMostTurnPerStep_rad, advice));
 }
 
 // Reads the path, if there is one, and proposes what is left out.
@@ -177,9 +192,10 @@ std::filesystem::path find_plant(const ConfigTable& table, const std::filesystem
   return beside;
 }
 
-// Returns the robot that [robot] describes, with the masses of its file.
+// Returns the robot that [robot] describes, with the masses of its file and the joints of `plant`,
+// unless that is empty.
 RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urdf,
-                      LoadedProblem& loaded) {
+                      const std::filesystem::path& plant, LoadedProblem& loaded) {
   RobotOptions options;
   options.base = table.get(kRobotBase);
   options.tip = table.get(kRobotTip);
@@ -188,7 +204,6 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
   if (!options.dynamics) {
     table.leave_out(kRobotDynamics);
   }
-  const std::filesystem::path plant = find_plant(table, urdf);
   try {
     RobotModel robot = load_urdf(urdf, options);
     add_input(loaded, urdf);
@@ -234,7 +249,8 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   const ConfigTable robot = table.get_table(kRobotSettings);
   const auto urdf = resolve_named(robot, kRobotUrdf, "robots");
   config.mass_scale = robot.get(kRobotMassScale);
-  config.robot = scale_masses(load_robot(robot, urdf, loaded), config.mass_scale);
+  const std::filesystem::path plant = find_plant(robot, urdf);
+  config.robot = scale_masses(load_robot(robot, urdf, plant, loaded), config.mass_scale);
   scale_plants_of(robot, config);
   config.own_effort_limits = robot.get(kRobotDynamics);
 
@@ -244,7 +260,6 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   const ConfigTable control = table.get_table_or_empty(kControlSettings);
   config.task = read_task(task, control);
   config.task.physics = read_physics(physics);
-  check_elasticity(physics, config);
   if (!config.task.home.empty() && config.task.home.size() != config.robot.joint_count()) {
     task.refuse(kTaskHome, fmt::format("it must hold {} numbers, one a joint of the robot",
                                        config.robot.joint_count()));
@@ -261,6 +276,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
       table.get_table_or_empty(kMotorSettings).get(kMotorsTorquePerMass);
   config.perturbation = read_perturbation(table.get_table_or_empty(kPerturbationSettings),
                                           {config.robot, config.start}, loaded);
+  check_elasticity(physics, config, plant);
   check_limits(table.get_table_or_empty(kObjectiveSettings), config);
   config.requirements = read_requirements(table.get_tables_or_empty(kRequirementSettings), config);
   loaded.problem = make_tracking(std::move(config), variables, urdf);

@@ -136,4 +136,9 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
   return plant;
 }
 
+RobotModel make_fastest_arm(RobotModel nominal, const Perturbation& p) {
+  return scale_plants(scale_masses(std::move(nominal), 1 - p.mass_relative),
+                      {.armature = 1 - p.armature_relative, .stiffness = 1 + p.stiffness_relative});
+}
+
 }  // namespace armwright

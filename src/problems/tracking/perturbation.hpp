@@ -46,7 +46,7 @@ struct Perturbation {
   double mass_relative = 0;
   std::optional<std::pair<double, double>> load_kg;  // nothing: the task's load
   // The lightest and heaviest load as shares of the mass of the moving links. The reader makes
-  // load_kg of it. Nothing: load_kg is given, or nothing.
+  // load_kg of it. Without it, load_kg has the load in kg, or the load is the task's.
   std::optional<std::pair<double, double>> load_share;
   // One number per joint; empty: no friction.
   std::vector<double> viscous_friction_n_m_s_per_rad, coulomb_friction_n_m;
@@ -104,5 +104,9 @@ struct Plant {
 // a plant substep.
 Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double substep_s,
                  std::string_view case_set, std::uint64_t number);
+
+// Returns the arm of the perturbation's plants whose springs move fastest: each joint has the
+// largest stiffness and damping and the smallest armature, each link the smallest mass.
+RobotModel make_fastest_arm(RobotModel nominal, const Perturbation& perturbation);
 
 }  // namespace armwright

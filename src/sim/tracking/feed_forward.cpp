@@ -8,8 +8,8 @@
 // (sim/robot/joint_plant.hpp). Elastic joints count as rigid.
 // With the efforts of inverse_dynamics, one step of semi-implicit Euler takes an arm without
 // friction and elasticity exactly from the target at the period's start to the target at its end.
-// With those of gravity, an arm at rest stays at rest. If a control period has more than one step, the arm ends beside the target; the
-// distance grows with h.
+// With those of gravity, an arm at rest stays at rest. If a control period has more than one step,
+// the arm ends beside the target; the distance grows with h.
 #include <algorithm>
 #include <vector>
 

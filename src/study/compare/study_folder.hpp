@@ -66,9 +66,9 @@ bool is_study_folder(const std::filesystem::path& path);
 void check_study_folder(const std::filesystem::path& folder);
 // Adds to `plan` the baselines that the folder's recorded plan has, and keeps its rules: the
 // candidates that are judged (keep_selection()), the plain form of functions and the solver of
-// arms where version 1.0 recorded them (keep_old_problems()), and the random streams of the optimizers
-// (adopt_streams()). Descriptions of plugins stay absent where version 1.0 recorded none. Does nothing if the folder is not a study's. To be called before the
-// constructor of StudyFolder.
+// arms where version 1.0 recorded them (keep_old_problems()), and the random streams of the
+// optimizers (adopt_streams()). Descriptions of plugins stay absent where version 1.0 recorded none.
+// Does nothing if the folder is not a study's. To be called before the constructor of StudyFolder.
 void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan);
 // Returns the plan that a study's folder records, to be read. Starts no plugin and opens none, so
 // the plugins need not exist; their cells cannot run. Throws Error{usage} or Error{bad_data}.

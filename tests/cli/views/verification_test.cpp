@@ -160,8 +160,38 @@ TEST(VerifyConclusion, NamesWhatCouldNotBeSimulated) {
   }
   EXPECT_STREQ(to_string(rows.back().verdict), "not simulated");
   EXPECT_EQ(conclude("mine", rows),
-            "mine holds in 1 of the 2 settings beside its own. Other plants: It holds with "
-            "friction. It could not be simulated with elastic.");
+            "mine holds in 1 of the 1 settings beside its own. 1 setting could not be simulated. "
+            "Other plants: It holds with friction. It could not be simulated with elastic.");
+}
+
+TEST(VerifyConclusion, SaysThatNoOtherSettingWasSimulated) {
+  std::vector<VerifyRow> rows = {judge_setting({}, make_summary({0.002}), make_summary({0.002}))};
+  EXPECT_EQ(conclude("mine", rows), "mine was simulated in no setting beside its own.");
+  rows.push_back(make_missing_row({"", 2, 1, "friction"}, "why"));
+  EXPECT_EQ(conclude("mine", rows),
+            "mine was simulated in no setting beside its own. 1 setting could not be simulated.");
+}
+
+// The substeps that springs need belong to their plant.
+TEST(VerifyConclusion, CountsSubstepsOfSpringsAsNoChange) {
+  const VerifySetting own{"a", 1, 1, "none"};
+  std::vector<VerifyRow> rows = {judge_setting(own, make_summary({0.002}), make_summary({0.002}))};
+  for (const bool springs : {true, false}) {
+    rows.resize(1);
+    const VerifySetting setting{"a", 10, 1, "elastic", springs};
+    rows.push_back(judge_setting(setting, make_summary({0.002}), make_summary({0.002})));
+    const std::string text = conclude("mine", rows);
+    EXPECT_EQ(text.find("Other plants: It holds with elastic.") != std::string::npos, springs)
+        << text;
+    EXPECT_EQ(text.find("several of these change") != std::string::npos, !springs) << text;
+  }
+}
+
+TEST(OtherPlants, HaveWordsOfTheirOwn) {
+  for (const OtherPlant& plant : other_plants()) {
+    EXPECT_EQ(std::ranges::count(other_plants(), plant.words, &OtherPlant::words), 1)
+        << plant.words;
+  }
 }
 
 TEST(OtherPlants, SuitWhatTheRobotHas) {

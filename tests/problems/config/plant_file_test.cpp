@@ -343,5 +343,77 @@ TEST(RobotPlant, RefusesAFileThatIsNotThere) {
       AllOf(HasSubstr("robot.plant is other.toml; "), HasSubstr("there is no file 'other.toml'")));
 }
 
+// The shipped arm with an elastic wrist, and a problem that simulates it.
+class ElasticWrist : public testing::Test {
+ protected:
+  void write_wrist(double stiffness) const {
+    folder_.write("soft.plant.toml",
+                  "[joint.joint_4]\narmature_kg_m2 = 0.01\nstiffness_n_m_per_rad = " +
+                      std::to_string(stiffness) + "\n");
+    folder_.write("p.toml",
+                  "kind = \"tracking\"\n[robot]\nurdf = \"irb4600_40_255\"\n"
+                  "plant = \"soft.plant.toml\"\n[variables]\nstart = \"table-a1\"\n");
+  }
+  std::string refusal_of(std::vector<std::string> overrides) const {
+    overrides.emplace_back("physics.engine=articulated");
+    return folder_.shorten(usage_error_of([&] { folder_.load("p.toml", overrides); }));
+  }
+  bool loads(std::vector<std::string> overrides) const {
+    overrides.emplace_back("physics.engine=articulated");
+    return folder_.load("p.toml", overrides).tracking() != nullptr;
+  }
+  // Returns the number that follows `words` in the message.
+  static double find_number(const std::string& message, const std::string& words) {
+    const std::size_t at = message.find(words);
+    EXPECT_NE(at, std::string::npos) << words << " is not in: " << message;
+    return at == std::string::npos ? 0 : std::stod(message.substr(at + words.size()));
+  }
+  static std::string set_substeps(int number) {
+    return "physics.substeps=" + std::to_string(number);
+  }
+  ProblemFolder folder_;
+};
+
+TEST_F(ElasticWrist, IsRefusedWithFewerSubstepsThanItsSpringNeeds) {
+  write_wrist(4000);
+  const std::string message = refusal_of({});
+  EXPECT_THAT(message, AllOf(HasSubstr("physics.substeps is 1; the spring of joint 'joint_4' "
+                                       "(stiffness 4000 N m/rad, soft.plant.toml) moves at "),
+                             HasSubstr("rad per step of 0.01 s; at most 0.5 rad can be simulated"),
+                             HasSubstr("or make the joint less stiff or less damped")));
+  const int needed = static_cast<int>(find_number(message, "set physics.substeps to "));
+  // The motor on a held link swings at (4000 / 0.01)^(1/2) rad/s; the link's inertia adds to it.
+  EXPECT_GE(needed, 13);
+  EXPECT_TRUE(loads({set_substeps(needed)}));
+  EXPECT_THAT(refusal_of({set_substeps(needed - 1)}), HasSubstr("can be simulated"));
+}
+
+TEST_F(ElasticWrist, NeedsTheSubstepsOfTheStiffestPlantThatIsDrawn) {
+  write_wrist(4000);
+  const double nominal = find_number(refusal_of({}), "moves at ");
+  const double perturbed = find_number(
+      refusal_of({"perturbation.stiffness_relative=0.8", "perturbation.armature_relative=0.9",
+                  "perturbation.mass_relative=0.9"}),
+      "moves at ");
+  // w^2 = k (1 / A + 1 / M), with two numbers of four digits.
+  EXPECT_NEAR(perturbed / nominal, std::sqrt(1.8 / 0.1), 1e-3 * std::sqrt(1.8 / 0.1));
+  const std::vector<std::string> spread = {"perturbation.stiffness_relative=0.8"};
+  const std::string message = refusal_of(spread);
+  EXPECT_THAT(message, HasSubstr("in the fastest of the perturbed plants"));
+  const int needed = static_cast<int>(find_number(message, "set physics.substeps to "));
+  EXPECT_TRUE(loads({spread[0], set_substeps(needed)}));
+  EXPECT_THAT(refusal_of({spread[0], set_substeps(needed - 1)}), HasSubstr("can be simulated"));
+}
+
+TEST_F(ElasticWrist, OfGreatStiffnessNeedsAShorterControlPeriod) {
+  write_wrist(1e9);
+  const std::string message = refusal_of({set_substeps(1000)});
+  EXPECT_THAT(message, Not(HasSubstr("or more")));
+  const double period_s =
+      find_number(message, "set physics.substeps to 1000 and control.period_s to ");
+  EXPECT_GT(period_s, 0.001);
+  EXPECT_TRUE(loads({set_substeps(1000), "control.period_s=" + std::to_string(period_s)}));
+}
+
 }  // namespace
 }  // namespace armwright

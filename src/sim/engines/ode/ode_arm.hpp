@@ -29,8 +29,9 @@ class OdeArm {
   OdeArm& operator=(const OdeArm&) = delete;
 
   // Advances by dt_s with one effort per joint, and one added inertia (kg m^2 or kg) per joint or
-  // none. Throws DivergenceError, naming the joint, for an effort that is not finite, and as soon as a link is more than 1 km away, turns faster than
-  // 1e6 rad/s or has no finite state. No arm that is only out of control comes near these limits.
+  // none. Throws DivergenceError, naming the joint, for an effort that is not finite, and as soon as
+  // a link is more than 1 km away, turns faster than 1e6 rad/s or has no finite state. No arm that
+  // is only out of control comes near these limits.
   void step(std::span<const double> effort, double dt_s, std::span<const double> inertia = {});
 
   void read_positions(std::span<double> q) const;  // revolute joints in [-pi, pi]
