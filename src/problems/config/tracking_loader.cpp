@@ -163,7 +163,7 @@ std::filesystem::path find_plant(const ConfigTable& table, const std::filesystem
       table.leave_out(kRobotPlant);  // so recorded version 1.0
       return "";
     }
-    return resolve_named(table, kRobotPlant, "robots");
+    return resolve_named(table, kRobotPlant, "plants");
   }
   const std::filesystem::path beside = name_plant_file(urdf);
   if (!path_exists(beside)) {
