@@ -259,6 +259,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
       table.get_table_or_empty(kMotorSettings).get(kMotorsTorquePerMass);
   config.perturbation = read_perturbation(table.get_table_or_empty(kPerturbationSettings),
                                           {config.robot, config.start}, loaded);
+  check_load(task, table.get_table_or_empty(kPerturbationSettings), config);
   check_limits(table.get_table_or_empty(kObjectiveSettings), config);
   config.requirements = read_requirements(table.get_tables_or_empty(kRequirementSettings), config);
   loaded.problem = make_tracking(std::move(config), variables, urdf);
