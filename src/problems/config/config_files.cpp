@@ -18,6 +18,11 @@ std::string get_extension(std::string_view kind) {
   return kind == "robots" ? ".urdf" : ".toml";
 }
 
+// Robots and their plants stand in one folder.
+std::filesystem::path find_folder(std::string_view kind) {
+  return find_config_folder() / (kind == "plants" ? "robots" : kind);
+}
+
 std::string get_singular(std::string_view kind) {
   if (kind == "studies") {
     return "study";
@@ -113,16 +118,14 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
   const std::string extension = get_extension(kind);
   const std::filesystem::path path(name_or_path);
   const bool has_folder = name_or_path.find('/') != std::string_view::npos;
-  // A robot may have a plant's file beside its URDF. load_urdf() refuses .xacro with advice.
-  const bool is_of_robot =
-      kind == "robots" && (path.extension() == ".xacro" || path.extension() == ".toml");
-  if (has_folder || path.extension() == extension || is_of_robot) {
+  const bool is_xacro = kind == "robots" && path.extension() == ".xacro";  // load_urdf() refuses it
+  if (has_folder || path.extension() == extension || is_xacro) {
     for (const auto& candidate : {beside / path, path}) {
       if (is_file(candidate)) {
         return candidate;
       }
     }
-    const auto shipped = has_folder ? path : find_config_folder() / kind / path;
+    const auto shipped = has_folder ? path : find_folder(kind) / path;
     if (!has_folder && is_file(shipped)) {  // "irb.urdf" may name a shipped file
       return shipped;
     }
@@ -133,12 +136,12 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
     throw Error(ErrorKind::usage, describe_unknown(get_singular(kind), name_or_path, names) +
                                       fmt::format(" (or the path of a {} file)", extension));
   }
-  return find_config_folder() / kind / (std::string(name_or_path) + extension);
+  return find_folder(kind) / (std::string(name_or_path) + extension);
 }
 
 std::vector<std::string> list_configs(std::string_view kind) {
   std::vector<std::string> names;
-  const auto folder = find_config_folder() / kind;
+  const auto folder = find_folder(kind);
   if (!folder_exists(folder)) {
     return names;
   }

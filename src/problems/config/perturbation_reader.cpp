@@ -334,4 +334,15 @@ Perturbation read_perturbation(const ConfigTable& table, const PerturbedRobot& r
   return read_keys(table, robot, perturbation);
 }
 
+void check_load(const ConfigTable& task, const ConfigTable& table, const TrackingConfig& config) {
+  // `verify` writes load_kg = [] for the nominal arm of a problem that draws loads.
+  const bool draws_load =
+      config.perturbation.load_kg || table.has(kPlantLoad) || table.has(kPlantLoadShare);
+  if (config.task.load_body && config.task.load_kg == 0 && !draws_load) {
+    task.refuse(kTaskLoadCom,
+                "it needs task.load_kg > 0, the mass that it belongs to, or a load in "
+                "[perturbation]");
+  }
+}
+
 }  // namespace armwright

@@ -16,8 +16,8 @@
 namespace armwright {
 namespace {
 
-constexpr std::size_t kCounterbalancePoints = 1025;
-// The transition rate is this share of the Stribeck rate unless the file gives both (JointPlant).
+constexpr std::size_t kCounterbalancePoints = 1025;  // over the joint's range; docs/robots.md
+// The Stribeck rate is this many times the transition rate unless the file gives it.
 constexpr double kRatesRatio = JointPlant{}.stribeck_rate / JointPlant{}.transition_rate;
 
 constexpr Range kPlantNotNegative{.lower = 0, .upper = 1e9};
@@ -234,13 +234,14 @@ void check_range(const ConfigTable& table, const SettingTable& inner, const Join
                            format_exact(joint.upper), turns ? "rad" : "m"));
 }
 
-// Returns the counterbalance from `lower` to `upper` with the efforts that `calc_effort` returns.
+// Returns the counterbalance over the joint's range with the efforts that `calc_effort` returns. It
+// is called with increasing positions.
 template <class Function>
-Counterbalance sample(double lower, double upper, const Function& calc_effort) {
-  Counterbalance balance{lower, upper, {}};
+Counterbalance sample(const Joint& joint, const Function& calc_effort) {
+  Counterbalance balance{joint.lower, joint.upper, {}};
   for (std::size_t i = 0; i < kCounterbalancePoints; ++i) {
     const double share = static_cast<double>(i) / (kCounterbalancePoints - 1);
-    balance.efforts.push_back(calc_effort(lower + (upper - lower) * share));
+    balance.efforts.push_back(calc_effort(joint.lower + (joint.upper - joint.lower) * share));
   }
   return balance;
 }
@@ -272,7 +273,7 @@ Counterbalance read_points(const ConfigTable& table, const Joint& joint) {
                              format_exact(joint.lower), format_exact(joint.upper)));
   }
   std::size_t right = 1;
-  return sample(positions.front(), positions.back(), [&](double position) {
+  return sample(joint, [&](double position) {
     while (right + 1 < positions.size() && positions[right] < position) {
       ++right;
     }
@@ -318,7 +319,7 @@ Counterbalance read_gas_spring(const ConfigTable& table, const Joint& joint) {
   }
   const double shortest_m = distance_m - arm_m;
   double least_m3 = volume_m3;
-  Counterbalance balance = sample(joint.lower, joint.upper, [&](double position) {
+  Counterbalance balance = sample(joint, [&](double position) {
     const double x = position + offset_rad;
     const double length_m =
         std::sqrt(distance_m * distance_m + arm_m * arm_m - 2 * distance_m * arm_m * std::cos(x));

@@ -114,7 +114,7 @@ extern const Setting<std::string> kTaskOrientation, kControlController;
 extern const Setting<bool> kTaskCountFirstPoint;
 extern const Setting<double> kTaskSpeed, kTaskDistanceLimit, kWorkspaceRadius,
     kWorkspaceShortestMove;
-extern const Setting<std::vector<double>> kTaskHome, kTaskToolRpy, kWorkspaceCentre,
+extern const Setting<std::vector<double>> kTaskHome, kTaskLoadCom, kTaskToolRpy, kWorkspaceCentre,
     kWorkspaceNormal;
 
 // The most control periods of a test case: the joint position setpoints of four joints then take
@@ -231,6 +231,9 @@ std::vector<std::string> make_overrides(const Perturbation& perturbation);
 // input of `loaded`.
 Perturbation read_perturbation(const ConfigTable& table, const PerturbedRobot& robot,
                                LoadedProblem& loaded);
+
+// Refuses, in [task], a load's centre of mass if the task has no load and no load is drawn.
+void check_load(const ConfigTable& task, const ConfigTable& table, const TrackingConfig& config);
 
 // requirement_reader.cpp: [[requirement]] (requirement.hpp)
 

@@ -33,6 +33,12 @@ const Setting<std::vector<double>> kTaskHome{
     kNoDefault,
     "joint positions where the search for the first posture begins: one number per joint, rad or m "
     "(default: the middle of the ranges)"};
+const Setting<std::vector<double>> kTaskLoadCom{
+    "load_com_m",
+    {.lower = -100, .upper = 100},
+    kNoDefault,
+    "the load's centre of mass in the tip's frame, three numbers (default: the load is a steel "
+    "block on the flange)"};
 const Setting<std::vector<double>> kTaskToolRpy{
     "tool_rpy_rad", kAngleRange, kNoDefault,
     "orientation of the tool in the world: roll, pitch and yaw, three numbers"};
@@ -75,12 +81,6 @@ const Setting<bool> kTaskIkBug{"ik_bug", TrackingTask{}.ik_bug,
                                "whether to repeat the thesis's error in its inverse kinematics"};
 const Setting<double> kTaskLoad{
     "load_kg", {.lower = 0, .upper = 1000}, TrackingTask{}.load_kg, "mass of the load"};
-const Setting<std::vector<double>> kTaskLoadCom{
-    "load_com_m",
-    {.lower = -100, .upper = 100},
-    kNoDefault,
-    "the load's centre of mass in the tip's frame, three numbers (default: the load is a steel "
-    "block on the flange)"};
 const Setting<std::vector<double>> kTaskLoadInertia{
     "load_inertia_kg_m2",
     {.lower = -1e6, .upper = 1e6},

@@ -180,7 +180,7 @@ std::filesystem::path find_plant(const ConfigTable& table, const std::filesystem
       table.leave_out(kRobotPlant);  // so recorded version 1.0
       return "";
     }
-    return resolve_named(table, kRobotPlant, "robots");
+    return resolve_named(table, kRobotPlant, "plants");
   }
   const std::filesystem::path beside = name_plant_file(urdf);
   if (!path_exists(beside)) {
@@ -277,6 +277,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   config.perturbation = read_perturbation(table.get_table_or_empty(kPerturbationSettings),
                                           {config.robot, config.start}, loaded);
   check_elasticity(physics, config, plant);
+  check_load(task, table.get_table_or_empty(kPerturbationSettings), config);
   check_limits(table.get_table_or_empty(kObjectiveSettings), config);
   config.requirements = read_requirements(table.get_tables_or_empty(kRequirementSettings), config);
   loaded.problem = make_tracking(std::move(config), variables, urdf);

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
+#include <string>
+#include <tuple>
 
 #include "base/text.hpp"
 #include "problems/config/config_files.hpp"
@@ -45,7 +48,7 @@ std::vector<ReplayRequest> choose_cases(const TrackingProblem& problem, const Re
   return replays.take();
 }
 
-// The robots of the replays: one per file and load.
+// The robots of the replays: one per file, mass and shape of the load.
 class Robots {
  public:
   Robots(json& list, std::vector<std::string>& notes) : list_(list), notes_(notes) {}
@@ -53,7 +56,7 @@ class Robots {
   std::size_t find(const LoadedProblem& problem) {
     const TrackingConfig& config = problem.tracking()->config();
     const auto urdf = json::parse(problem.resolved_json).at("robot").at("urdf").get<std::string>();
-    const auto key = fmt::format("{} {}", urdf, config.task.load_kg);
+    const Key key{urdf, config.task.load_kg, config.task.load_body};
     const auto known = std::ranges::find(keys_, key);
     if (known == keys_.end()) {
       keys_.push_back(key);
@@ -65,9 +68,11 @@ class Robots {
   }
 
  private:
+  using Key = std::tuple<std::string, double, std::optional<LoadBody>>;  // URDF, kg, shape
+
   json& list_;
   std::vector<std::string>& notes_;
-  std::vector<std::string> keys_;
+  std::vector<Key> keys_;
 };
 
 }  // namespace

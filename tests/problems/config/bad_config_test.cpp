@@ -78,6 +78,9 @@ const std::vector<Mistake> kTask = {
     {"[task]\nload_kg = 2\nload_com_m = [0, 0, 0]\nload_inertia_kg_m2 = [1, 1, 1]",
      "5: task.load_inertia_kg_m2 is [1, 1, 1]; it must be six numbers: ixx, iyy, izz, ixy, ixz and "
      "iyz"},
+    {"[task]\nload_com_m = [0, 0, 0]",
+     "3: task.load_com_m is [0, 0, 0]; it needs task.load_kg > 0, the mass that it belongs to, or "
+     "a load in [perturbation]"},
     {"[task]\nload_com_m = [0, 0, 0]\nload_inertia_kg_m2 = [1, 1, 1, 0, 0, 0]",
      "4: task.load_inertia_kg_m2 is [1, 1, 1, 0, 0, 0]; it needs task.load_kg > 0, the mass that "
      "it belongs to"},

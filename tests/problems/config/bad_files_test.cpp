@@ -119,6 +119,16 @@ TEST(NamedFile, OfTheShippedOnesMayHaveItsExtension) {
   EXPECT_EQ(load_design("table-a5.toml").name, "table-a5");
 }
 
+TEST(NamedFile, OfAPlantIsNoRobot) {
+  const ProblemFolder folder;
+  EXPECT_THAT(
+      folder.refusal_of_base_with("[robot]\nplant = 'arm7'\n"),
+      testing::HasSubstr("p.toml:3: robot.plant is 'arm7'; unknown plant 'arm7'. Valid: (none) (or "
+                         "the path of a .toml file)"));
+  EXPECT_THAT(folder.refusal_of_base_with("[robot]\nurdf = 'mine.toml'\n"),
+              testing::HasSubstr("p.toml:3: robot.urdf is 'mine.toml'; unknown robot 'mine.toml'"));
+}
+
 TEST(BadExtends, NamesTheChain) {
   const ProblemFolder folder;
   EXPECT_EQ(folder.refusal_of("extends = \"p\""),

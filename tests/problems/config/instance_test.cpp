@@ -159,6 +159,18 @@ TEST(RecordedSolver, IsLeftOutWhereTheArmHasAClosedForm) {
   EXPECT_FALSE(json::parse(problem.resolved_json)["task"].contains("solver"));
 }
 
+// Version 1.0 recorded no [task] for a file without one, also when it read the record again.
+TEST(RecordedSolver, AddsNoTask) {
+  const ProblemFolder folder;
+  folder.write("p.toml",
+               "kind = 'tracking'\n[robot]\nurdf = 'irb4600_40_255'\n[variables]\n"
+               "start = 'table-a1'\n[[variables.joint]]\nname = 'joint_1'\noptimize = ['p']\n");
+  const LoadedProblem problem = folder.load("p.toml");
+  EXPECT_FALSE(json::parse(problem.resolved_json).contains("task"));
+  const LoadedProblem again = load_recorded_problem(problem.resolved_json, "p", "/nowhere");
+  EXPECT_EQ(again.resolved_json, problem.resolved_json);
+}
+
 TEST(RecordedSolver, OfAnotherNameIsRefused) {
   const ProblemFolder folder;
   EXPECT_THAT(folder.refusal_of_base_with("[task]\nsolver = \"eigen\"\n"),

@@ -112,22 +112,23 @@ TEST(PlantFile, ReplacesTheFrictionOfTheUrdfKeyByKey) {
   EXPECT_EQ(plant.stribeck_rate, 0.2);  // ten times the transition rate
 }
 
-TEST(PlantFile, ResamplesTheCounterbalance) {
+// The table covers more than the joint's range, -1.25 to 0.75 rad.
+TEST(PlantFile, SamplesTheCounterbalanceOverTheJointsRange) {
   const ProblemFolder folder;
   const Counterbalance balance =
       read_joint(folder,
-                 "[joint.shoulder.counterbalance]\npositions_rad = [-1.25, 0.25, 2.75]\n"
-                 "efforts_n_m = [10, 40, -10]\n",
+                 "[joint.shoulder.counterbalance]\npositions_rad = [-2.75, 0.25, 2.75]\n"
+                 "efforts_n_m = [-20, 40, -10]\n",
                  1)
           .plant.counterbalance;
   EXPECT_EQ(balance.lower, -1.25);
-  EXPECT_EQ(balance.upper, 2.75);
+  EXPECT_EQ(balance.upper, 0.75);
   ASSERT_EQ(balance.efforts.size(), 1025u);
-  EXPECT_EQ(balance.efforts.front(), 10);
-  EXPECT_EQ(balance.efforts.back(), -10);
-  EXPECT_EQ(balance.efforts[384], 40);               // at -1.25 + 4 x 384 / 1024 = 0.25
-  EXPECT_DOUBLE_EQ(balance.efforts[192], 25);        // halfway up
-  EXPECT_DOUBLE_EQ(balance.efforts[384 + 320], 15);  // halfway down
+  EXPECT_DOUBLE_EQ(balance.efforts.front(), 10);     // -20 + 20 x 1.5
+  EXPECT_DOUBLE_EQ(balance.efforts[384], 25);        // at -1.25 + 2 x 384 / 1024 = -0.5
+  EXPECT_DOUBLE_EQ(balance.efforts[768], 40);        // at 0.25
+  EXPECT_DOUBLE_EQ(balance.efforts[768 + 128], 35);  // at 0.5: 40 - 20 x 0.25
+  EXPECT_DOUBLE_EQ(balance.efforts.back(), 30);      // at 0.75
 }
 
 // The counterbalance of a KUKA KR300's axis 2 with the numbers of Weigand et al. (2021).
