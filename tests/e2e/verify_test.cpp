@@ -189,9 +189,9 @@ TEST_F(Verify, OtherPlantsDifferFromThoseThatSettingsMake) {
           std::vector<std::string>{"--substeps", "10", "--perturbations",
                                    "lighter-rotors,heavier-rotors,softer", "--json", "-q"})
           .out);
-  std::set<double> errors_m;
+  std::set<std::string> errors_m;  // null for an arm that diverges
   for (const json& row : verified["rows"]) {
-    errors_m.insert(row["mean_error_m"].get<double>());
+    errors_m.insert(row["mean_error_m"].dump());
   }
   EXPECT_EQ(verified["rows"].size(), 4U);
   EXPECT_EQ(errors_m.size(), 4U);

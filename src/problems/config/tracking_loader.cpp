@@ -192,10 +192,11 @@ std::filesystem::path find_plant(const ConfigTable& table, const std::filesystem
   return beside;
 }
 
-// Returns the robot that [robot] describes, with the masses of its file and the joints of `plant`,
-// unless that is empty.
-RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urdf,
-                      const std::filesystem::path& plant, LoadedProblem& loaded) {
+// Returns the robot that [robot] describes, with the masses of its file, and its plant's file, which
+// may be empty.
+std::pair<RobotModel, std::filesystem::path> load_robot(const ConfigTable& table,
+                                                        const std::filesystem::path& urdf,
+                                                        LoadedProblem& loaded) {
   RobotOptions options;
   options.base = table.get(kRobotBase);
   options.tip = table.get(kRobotTip);
@@ -204,6 +205,7 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
   if (!options.dynamics) {
     table.leave_out(kRobotDynamics);
   }
+  const std::filesystem::path plant = find_plant(table, urdf);
   try {
     RobotModel robot = load_urdf(urdf, options);
     add_input(loaded, urdf);
@@ -214,7 +216,7 @@ RobotModel load_robot(const ConfigTable& table, const std::filesystem::path& urd
       load_plant(plant, robot);
       add_input(loaded, plant);
     }
-    return robot;
+    return {std::move(robot), plant};
   } catch (const RobotOptionError& error) {
     table.refuse(table.has(error.option()) ? error.option() : kRobotUrdf.key, error.what());
   }
@@ -249,8 +251,8 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   const ConfigTable robot = table.get_table(kRobotSettings);
   const auto urdf = resolve_named(robot, kRobotUrdf, "robots");
   config.mass_scale = robot.get(kRobotMassScale);
-  const std::filesystem::path plant = find_plant(robot, urdf);
-  config.robot = scale_masses(load_robot(robot, urdf, plant, loaded), config.mass_scale);
+  auto [model, plant] = load_robot(robot, urdf, loaded);
+  config.robot = scale_masses(std::move(model), config.mass_scale);
   scale_plants_of(robot, config);
   config.own_effort_limits = robot.get(kRobotDynamics);
 

@@ -377,7 +377,7 @@ class ElasticWrist : public testing::Test {
 
 TEST_F(ElasticWrist, IsRefusedWithFewerSubstepsThanItsSpringNeeds) {
   write_wrist(4000);
-  const std::string message = refusal_of({});
+  const std::string message = refusal_of({set_substeps(1)});
   EXPECT_THAT(message, AllOf(HasSubstr("physics.substeps is 1; the spring of joint 'joint_4' "
                                        "(stiffness 4000 N m/rad, soft.plant.toml) moves at "),
                              HasSubstr("rad per step of 0.01 s; at most 0.5 rad can be simulated"),
