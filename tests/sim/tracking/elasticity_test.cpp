@@ -27,14 +27,14 @@ RobotModel make_one_link(double damping) {
 }
 constexpr double kMoved = 0.02 + 2 * 0.5 * 0.5;  // kg m^2, about the joint
 // Some ten roundings.
-constexpr double kRounding = 1e-14;
+constexpr double kEigenvalueError = 1e-14;
 
 TEST(FastestMode, OfOneJointIsTheClosedForm) {
   const double rate = std::sqrt(kStiffness * (1 / kArmature + 1 / kMoved));
   const auto mode = find_fastest_mode(make_one_link(1));
   ASSERT_TRUE(mode);
   EXPECT_EQ(mode->joint, 0u);
-  EXPECT_NEAR(mode->rate_rad_per_s, rate, kRounding * rate);
+  EXPECT_NEAR(mode->rate_rad_per_s, rate, kEigenvalueError * rate);
 }
 
 // A damping of z decays at z (1 / A + 1 / M), which exceeds the swing's rate.
@@ -43,7 +43,7 @@ TEST(FastestMode, OfAStronglyDampedJointIsItsDecay) {
   ASSERT_GT(decay, std::sqrt(kStiffness * (1 / kArmature + 1 / kMoved)));
   const auto mode = find_fastest_mode(make_one_link(200));
   ASSERT_TRUE(mode);
-  EXPECT_NEAR(mode->rate_rad_per_s, decay, kRounding * decay);
+  EXPECT_NEAR(mode->rate_rad_per_s, decay, kEigenvalueError * decay);
 }
 
 TEST(FastestMode, IsAbsentInARigidArmAndNamesTheElasticJoint) {
