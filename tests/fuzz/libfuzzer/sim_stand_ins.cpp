@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "sim/engines/articulated/articulated_engine.hpp"
+#include "sim/kinematics/posture_solver.hpp"
 #include "sim/kinematics/targets.hpp"
 
 namespace armwright {
@@ -26,6 +27,10 @@ std::unique_ptr<PhysicsEngine> make_articulated_engine(const EngineOptions& /*op
 
 targets::SolveMove targets::get_solve_move(SimdLevel /*level*/) {
   return solve_move_scalar;
+}
+
+postures::Solve postures::get_solve(SimdLevel /*level*/) {
+  return solve_scalar;
 }
 
 }  // namespace armwright
