@@ -11,6 +11,9 @@ foreach(level scalar sse2 avx2 avx512)
   # uninitialised values are wrong in this code.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     list(APPEND flags -Wno-maybe-uninitialized -fno-tree-pre -fschedule-insns -fsched-pressure)
+    # The ideal arm's step just fits into the store of decoded instructions of some processors (AMD Zen 3). Where its loop lies otherwise
+    # decides its speed: from 26 to 38 ns per step in one program.
+    list(APPEND flags -falign-loops=64)
   endif()
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
     list(APPEND flags ${instructions_${level}})

@@ -122,35 +122,40 @@ ARMWRIGHT_INLINE unsigned solve(const ElbowUpArm& arm, Vec3<V> target, V* angles
   return reached;
 }
 
-// Writes four packs as rows of four numbers, one row per lane, for the first `count` lanes.
-template <class V>
-ARMWRIGHT_INLINE void write_rows(const V* angles, int count, double* rows) {
-  double numbers[4][V::kLanes];
-  __builtin_memcpy(numbers, angles, sizeof numbers);
+// Writes kWidth packs as rows of kWidth numbers, one row per lane, for the first `count` lanes.
+template <int kWidth, class V>
+ARMWRIGHT_INLINE void write_rows(const V* packs, int count, double* rows) {
+  double numbers[kWidth][V::kLanes];
+  __builtin_memcpy(numbers, packs, sizeof numbers);
   for (int lane = 0; lane < count; ++lane) {
-    for (int joint = 0; joint < 4; ++joint) {
-      rows[4 * lane + joint] = numbers[joint][lane];
+    for (int column = 0; column < kWidth; ++column) {
+      rows[kWidth * lane + column] = numbers[column][lane];
     }
   }
+}
+
+// Returns `first`, `first` + 1, ..., one number per lane.
+template <class V>
+ARMWRIGHT_INLINE V count_from(int first) {
+  constexpr double kNumbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+  static_assert(V::kLanes <= 8);
+  V lane;
+  __builtin_memcpy(static_cast<void*>(&lane), kNumbers, sizeof lane);
+  return V(static_cast<double>(first)) + lane;
 }
 
 // Implements SolveMove (targets.hpp) for one lane type.
 template <class V>
 ARMWRIGHT_INLINE int solve_move(const ElbowUpArm& arm, const Move& move, int steps, double* rows) {
   constexpr int kLanes = V::kLanes;
-  constexpr double kNumbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-  static_assert(kLanes <= 8);
-  V lane;
-  __builtin_memcpy(static_cast<void*>(&lane), kNumbers, sizeof lane);
   for (int first = 0; first < steps; first += kLanes) {
     V angles[4];
-    const unsigned reached =
-        solve(arm, calc_position(move, V(static_cast<double>(first)) + lane), angles);
+    const unsigned reached = solve(arm, calc_position(move, count_from<V>(first)), angles);
     const int left = steps - first;
     if (left >= kLanes) {
-      write_rows(angles, kLanes, rows + 4 * first);
+      write_rows<4>(angles, kLanes, rows + 4 * first);
     } else {
-      write_rows(angles, left, rows + 4 * first);
+      write_rows<4>(angles, left, rows + 4 * first);
     }
     const unsigned wanted = (left < kLanes ? 1U << left : 1U << kLanes) - 1;
     if ((reached & wanted) != wanted) {
@@ -158,6 +163,17 @@ ARMWRIGHT_INLINE int solve_move(const ElbowUpArm& arm, const Move& move, int ste
     }
   }
   return steps;
+}
+
+// Implements CalcPositions (targets.hpp) for one lane type.
+template <class V>
+ARMWRIGHT_INLINE void calc_positions(const Move& move, int steps, double* rows) {
+  for (int first = 0; first < steps; first += V::kLanes) {
+    const Vec3<V> position = calc_position(move, count_from<V>(first));
+    const V packs[3] = {position.x, position.y, position.z};
+    const int left = steps - first;
+    write_rows<3>(packs, left < V::kLanes ? left : V::kLanes, rows + 3 * first);
+  }
 }
 
 }  // namespace armwright::targets

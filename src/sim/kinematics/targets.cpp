@@ -5,22 +5,22 @@
 
 namespace armwright::targets {
 
-SolveMove get_solve_move(SimdLevel level) {
+MoveFunctions get_move_functions(SimdLevel level) {
 #if defined(__x86_64__)
   switch (level) {
     case SimdLevel::avx512:
-      return solve_move_avx512;
+      return {solve_move_avx512, calc_positions_avx512};
     case SimdLevel::avx2:
-      return solve_move_avx2;
+      return {solve_move_avx2, calc_positions_avx2};
     case SimdLevel::sse2:
-      return solve_move_sse2;
+      return {solve_move_sse2, calc_positions_sse2};
     case SimdLevel::scalar:
       break;
   }
 #else
   (void)level;  // only `scalar` is supported
 #endif
-  return solve_move_scalar;
+  return {solve_move_scalar, calc_positions_scalar};
 }
 
 }  // namespace armwright::targets

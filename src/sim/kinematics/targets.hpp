@@ -69,15 +69,22 @@ bool solve(const ElbowUpArm& arm, const double target_m[3], double angles_rad[4]
 // Writes the angles (rad) for steps 0 to `steps` - 1 of the move, four per step. Returns the number
 // of steps before the first one whose target is out of reach; the angles of later steps are
 // invalid.
-using SolveMove = int (*)(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad);
-// Returns the function for the level, which this CPU must support.
-SolveMove get_solve_move(SimdLevel level);
+using SolveMove = int(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad);
+// Writes the target's positions at the ends of steps 0 to `steps` - 1 (m), three per step: the same
+// numbers as calc_position().
+using CalcPositions = void(const Move& move, int steps, double* positions_m);
+
+struct MoveFunctions {
+  SolveMove* solve_move;
+  CalcPositions* calc_positions;
+};
+// Returns the functions for the level, which this CPU must support.
+MoveFunctions get_move_functions(SimdLevel level);
 
 // Each function is defined in a file that is compiled for its instruction set.
-int solve_move_scalar(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad);
-int solve_move_sse2(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad);
-int solve_move_avx2(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad);
-int solve_move_avx512(const ElbowUpArm& arm, const Move& move, int steps, double* angles_rad);
+SolveMove solve_move_scalar, solve_move_sse2, solve_move_avx2, solve_move_avx512;
+CalcPositions calc_positions_scalar, calc_positions_sse2, calc_positions_avx2,
+    calc_positions_avx512;
 
 }  // namespace targets
 }  // namespace armwright

@@ -42,6 +42,10 @@ int solve_move_scalar(const ElbowUpArm& arm, const Move& move, int steps, double
   return solve_move<Number>(arm, move, steps, angles_rad);
 }
 
+void calc_positions_scalar(const Move& move, int steps, double* positions_m) {
+  calc_positions<Number>(move, steps, positions_m);
+}
+
 }  // namespace armwright::targets
 
 namespace armwright::postures {

@@ -14,6 +14,10 @@ int solve_move_sse2(const ElbowUpArm& arm, const Move& move, int steps, double* 
   return solve_move<Numbers>(arm, move, steps, angles_rad);
 }
 
+void calc_positions_sse2(const Move& move, int steps, double* positions_m) {
+  calc_positions<Numbers>(move, steps, positions_m);
+}
+
 }  // namespace armwright::targets
 
 namespace armwright::postures {

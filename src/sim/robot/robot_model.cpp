@@ -160,7 +160,7 @@ RobotModel scale_masses(RobotModel model, double factor) {
 }
 
 RobotModel scale_plants(RobotModel model, const PlantScales& scales) {
-  constexpr double kDampingRatio = 0.05;
+  constexpr double kSpringDamping = 0.05;
   const std::vector<double> inertias = calc_moved_inertias(model, list_middles(model));
   for (std::size_t i = 0; i < model.joint_count(); ++i) {
     JointPlant& plant = model.joints[i].plant;
@@ -171,7 +171,7 @@ RobotModel scale_plants(RobotModel model, const PlantScales& scales) {
     if (!plant.is_elastic() && scales.elastic_hz > 0) {
       const double rate = 2 * std::numbers::pi * scales.elastic_hz;  // rad/s
       plant.stiffness = rate * rate * plant.armature;
-      plant.damping = 2 * kDampingRatio * rate * plant.armature;
+      plant.damping = 2 * kSpringDamping * rate * plant.armature;
     }
     plant.armature *= scales.armature;
     plant.stiffness *= scales.stiffness;

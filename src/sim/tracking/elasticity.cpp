@@ -18,7 +18,7 @@ struct ElasticityLevel;  // tags the code that this file instantiates
 using ElasticNumber = lanes::Single<double, ElasticityLevel>;
 using ElasticChain = articulated::ChainShape<0, articulated::kAnyShape, true>;
 
-constexpr int kPostures = 32;
+constexpr int kSampledPostures = 32;
 constexpr double kWidest = std::numbers::pi;  // rad or m, for joints without range
 
 // Returns the mass matrix with the rotors of rigid joints.
@@ -88,7 +88,7 @@ std::optional<ElasticMode> find_fastest_mode(const RobotModel& robot) {
   const articulated::ChainModel chain(robot, 0);
   RandomStream random("elastic joints/postures", 0);
   ElasticMode fastest{0, static_cast<std::size_t>(elastic.front())};
-  for (int posture = 0; posture < kPostures; ++posture) {
+  for (int posture = 0; posture < kSampledPostures; ++posture) {
     std::vector<ElasticNumber> q;
     for (const Joint& joint : robot.joints) {
       const double lower = std::clamp(joint.lower, -kWidest, kWidest);

@@ -14,7 +14,7 @@ namespace {
 // Tolerance for the rounding of positions at the end of a range and of speeds at the limit.
 constexpr double kRounding = 1e-6;
 // Singular values cost far more than positions, so they are computed only every so many steps.
-constexpr int kStepsBetween = 5;
+constexpr int kStepsBetweenDecompositions = 5;
 
 // The worst fault of one kind so far.
 struct Worst {
@@ -75,7 +75,7 @@ std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const Target
           speeds[i].consider(fault, fault.value - joint.speed_limit);
         }
       }
-      if (step % kStepsBetween == 0 && !std::ranges::equal(before, q)) {
+      if (step % kStepsBetweenDecompositions == 0 && !std::ranges::equal(before, q)) {
         fault.kind = PathFault::Kind::singular;
         fault.value = kinematics->calc_dexterity(q);
         fault.limit = kSingularDexterity;

@@ -35,7 +35,7 @@ int count_moving_steps(const Segment& segment, double period_s) {
   return steps;
 }
 
-constexpr int kJoints = 4;  // of an arm that the closed form can solve
+constexpr int kElbowUpJoints = 4;  // of an arm that the closed form can solve
 
 // The rate at which joints move towards the middle of their ranges if the task leaves them free. It
 // is slow compared with moves, which take about a second.
@@ -52,7 +52,7 @@ void repeat_row(double* begin, const double* end) {
   const double b = begin[-3];
   const double c = begin[-2];
   const double d = begin[-1];
-  for (; begin != end; begin += kJoints) {
+  for (; begin != end; begin += kElbowUpJoints) {
     begin[0] = a;
     begin[1] = b;
     begin[2] = c;
@@ -147,25 +147,6 @@ ToolPose TrackingSetup::make_pose(const TestCase& test_case, std::size_t point) 
           test_case.turns.empty() ? task_.tool.turn : test_case.turns[point].toRotationMatrix()};
 }
 
-ToolPose TrackingSetup::calc_target_pose(const TestCase& test_case, const TargetTable& table,
-                                         std::size_t segment, const targets::Move& move,
-                                         int step) const {
-  const Segment& its = table.segments[segment];
-  ToolPose pose = make_pose(test_case, segment + 1);
-  if (!its.is_sample) {
-    targets::calc_position(move, step, pose.position_m.data());
-  }
-  const double time_s = (step + 1) * task_.control_period_s;
-  if (!its.is_sample && !test_case.turns.empty() && time_s < its.duration_s) {
-    // The tool turns in proportion to the distance covered (Shoemake 1985, Animating rotation with
-    // quaternion curves, SIGGRAPH 19).
-    const double share = targets::calc_distance(move.curve, time_s) / move.curve.distance_m;
-    pose.turn =
-        test_case.turns[segment].slerp(share, test_case.turns[segment + 1]).toRotationMatrix();
-  }
-  return pose;
-}
-
 int TrackingSetup::count_distinct_steps(const Segment& segment) const {
   return std::min(segment.steps, count_moving_steps(segment, task_.control_period_s) + 1);
 }
@@ -197,7 +178,7 @@ void TrackingSetup::make_timeline(const TestCase& test_case, TargetTable& table)
 }
 
 void TrackingSetup::solve_closed_form(const TestCase& test_case, TargetTable& table) const {
-  std::array<double, kJoints> q{};
+  std::array<double, kElbowUpJoints> q{};
   const Eigen::Vector3d& start = test_case.points_m.front();
   if (!closed_form_->solve(start, q)) {
     table.unreachable = "start: " + closed_form_->describe_unreachable(start);
@@ -205,7 +186,7 @@ void TrackingSetup::solve_closed_form(const TestCase& test_case, TargetTable& ta
   }
   table.start_positions.assign(q.begin(), q.end());
   table.joint_positions.resize(static_cast<std::size_t>(table.steps) * table.joints);
-  const targets::SolveMove solve_move = targets::get_solve_move(find_best_simd());
+  const auto solve_move = targets::get_move_functions(find_best_simd()).solve_move;
   for (std::size_t k = 0; k < table.segments.size(); ++k) {
     const Segment& segment = table.segments[k];
     const std::size_t first = static_cast<std::size_t>(segment.first_step) * table.joints;
@@ -214,7 +195,8 @@ void TrackingSetup::solve_closed_form(const TestCase& test_case, TargetTable& ta
     const int distinct = count_distinct_steps(segment);
     int reached = 0;
     if (segment.is_sample) {
-      reached = closed_form_->solve(segment.to_m, std::span<double, kJoints>(angles, kJoints));
+      reached = closed_form_->solve(segment.to_m,
+                                    std::span<double, kElbowUpJoints>(angles, kElbowUpJoints));
     } else {
       reached = solve_move(closed_form_->arm(), make_move(segment), distinct, angles);
     }
@@ -225,7 +207,7 @@ void TrackingSetup::solve_closed_form(const TestCase& test_case, TargetTable& ta
       table.joint_positions.resize(first + static_cast<std::size_t>(reached) * table.joints);
       return;
     }
-    repeat_row(angles + distinct * kJoints, angles + segment.steps * kJoints);
+    repeat_row(angles + distinct * kElbowUpJoints, angles + segment.steps * kElbowUpJoints);
   }
 }
 
@@ -242,6 +224,7 @@ class TrackingSetup::NumericPath {
         table_(table),
         finding_(kinematics_, setup.make_pose(test_case, 0)),
         following_(kinematics_.make_following()),
+        calc_positions_(targets::get_move_functions(find_best_simd()).calc_positions),
         centring_(std::min(1.0, kCentringRate_hz * setup.task_.control_period_s)) {}
 
   // The next search to execute.
@@ -283,8 +266,11 @@ class TrackingSetup::NumericPath {
     if (segment_ < table_.segments.size()) {
       const Segment& its = table_.segments[segment_];
       distinct_ = setup_.count_distinct_steps(its);
+      end_ = setup_.make_pose(test_case_, segment_ + 1);
       if (!its.is_sample) {
         move_ = setup_.make_move(its);
+        positions_m_.resize(static_cast<std::size_t>(distinct_));
+        calc_positions_(move_, distinct_, positions_m_.front().data());
       }
     }
   }
@@ -316,8 +302,27 @@ class TrackingSetup::NumericPath {
       position += carried;
       following_.wish[i] = drawn - carried;
     }
-    following_.target = setup_.calc_target_pose(test_case_, table_, segment_, move_, step_);
+    set_target();
     return true;
+  }
+
+  void set_target() {
+    const Segment& its = table_.segments[segment_];
+    ToolPose& target = following_.target;
+    target = end_;
+    if (its.is_sample) {
+      return;
+    }
+    target.position_m = positions_m_[static_cast<std::size_t>(step_)];
+    const double time_s = (step_ + 1) * move_.period_s;
+    if (!test_case_.turns.empty() && time_s < its.duration_s) {
+      // The tool turns in proportion to the distance covered (Shoemake 1985, Animating rotation
+      // with quaternion curves, SIGGRAPH 19).
+      const double share = targets::calc_distance(move_.curve, time_s) / move_.curve.distance_m;
+      target.turn = test_case_.turns[segment_]
+                        .slerp(share, test_case_.turns[segment_ + 1])
+                        .toRotationMatrix();
+    }
   }
 
   int count_steps() const { return table_.segments[segment_].first_step + step_; }
@@ -337,13 +342,16 @@ class TrackingSetup::NumericPath {
   TargetTable& table_;
   NumericKinematics::Finding finding_;
   NumericKinematics::Approach following_;
+  targets::CalcPositions* const calc_positions_;
   const double centring_;
   bool is_following_ = false;
   Vector before_;  // a step earlier
   std::size_t segment_ = 0;
-  int step_ = 0;        // of the segment
-  int distinct_ = 0;    // its steps with targets of their own
-  targets::Move move_;  // of the segment
+  int step_ = 0;      // of the segment
+  int distinct_ = 0;  // its steps with targets of their own
+  ToolPose end_;      // the target at the end of the segment
+  targets::Move move_;
+  std::vector<Eigen::Vector3d> positions_m_;  // of the target, one per distinct step
 };
 
 void TrackingSetup::solve_numerically(std::span<const TestCase> test_cases,

@@ -53,10 +53,6 @@ class TrackingSetup {
   // Computes the table's feed-forward efforts from its joint positions (feed_forward.cpp).
   void fill_feed_forward(TargetTable& table) const;
   ToolPose make_pose(const TestCase& test_case, std::size_t point) const;
-  // Returns the target at the end of a step. `move` is make_move() of the segment, unless that is a
-  // sample.
-  ToolPose calc_target_pose(const TestCase& test_case, const TargetTable& table,
-                            std::size_t segment, const targets::Move& move, int step) const;
   // Returns how many of a segment's steps have targets of their own: the steps before the target
   // has arrived, and the first step at whose end it has.
   int count_distinct_steps(const Segment& segment) const;

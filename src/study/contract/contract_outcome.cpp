@@ -57,7 +57,7 @@ ContractFinding check_leaks(const OptimizerRow& row, const Options& options) {
   const std::size_t descriptors = count_descriptors();
   // Leaks grow with every round; the caches of libraries and threads stop growing. A run that leaks
   // one vector of the sphere's ten numbers leaves a hundred bytes.
-  constexpr int kRounds = 6;
+  constexpr int kRounds = 20;
   constexpr std::size_t kTolerance_bytes = 1000;
   std::size_t left_bytes = kTolerance_bytes + 1;
   for (int round = 0; round < kRounds && left_bytes > kTolerance_bytes; ++round) {

@@ -25,8 +25,8 @@ std::unique_ptr<PhysicsEngine> make_articulated_engine(const EngineOptions& /*op
   return std::make_unique<NoEngine>();
 }
 
-targets::SolveMove targets::get_solve_move(SimdLevel /*level*/) {
-  return solve_move_scalar;
+targets::MoveFunctions targets::get_move_functions(SimdLevel /*level*/) {
+  return {solve_move_scalar, calc_positions_scalar};
 }
 
 postures::Solve postures::get_solve(SimdLevel /*level*/) {

@@ -44,7 +44,7 @@ struct Solution {
   int reached;
   std::vector<double> angles_rad;  // of the steps reached, then kNone
 };
-Solution solve(targets::SolveMove solve_move, const ElbowUpArm& arm, const Move& move, int steps) {
+Solution solve(targets::SolveMove* solve_move, const ElbowUpArm& arm, const Move& move, int steps) {
   Solution solution{0, std::vector<double>(static_cast<std::size_t>(4 * steps + 4), kNone)};
   solution.reached = solve_move(arm, move, steps, solution.angles_rad.data());
   for (std::size_t i = 0; i < 4; ++i) {
@@ -85,8 +85,14 @@ TEST(Targets, AreTheSameBitsAtEverySimdLevelAndOneByOne) {
     const Move move = make_move(from, to, kShapes[static_cast<std::size_t>(i) % kShapes.size()]);
     const int steps = 1 + i % 150;
     const Solution scalar = solve(targets::solve_move_scalar, arm, move, steps);
+    std::vector<double> positions(static_cast<std::size_t>(3 * steps));
+    targets::calc_positions_scalar(move, steps, positions.data());
     for (const SimdLevel level : supported_levels()) {
-      const Solution solution = solve(targets::get_solve_move(level), arm, move, steps);
+      std::vector<double> others(positions.size());
+      targets::get_move_functions(level).calc_positions(move, steps, others.data());
+      ASSERT_TRUE(are_same_bits(others, positions)) << to_string(level) << ' ' << i;
+      const Solution solution =
+          solve(targets::get_move_functions(level).solve_move, arm, move, steps);
       ASSERT_EQ(solution.reached, scalar.reached) << to_string(level) << ' ' << i;
       ASSERT_TRUE(are_same_bits(solution.angles_rad, scalar.angles_rad))
           << to_string(level) << ' ' << i;
@@ -94,6 +100,9 @@ TEST(Targets, AreTheSameBitsAtEverySimdLevelAndOneByOne) {
     for (int step = 0; step < steps && step <= scalar.reached; ++step) {
       Eigen::Vector3d target;
       targets::calc_position(move, step, target.data());
+      ASSERT_EQ(
+          std::memcmp(target.data(), &positions[static_cast<std::size_t>(3 * step)], sizeof target),
+          0);
       std::vector<double> q(4, kNone);
       ASSERT_EQ(targets::solve(arm, target.data(), q.data()), step < scalar.reached);
       ASSERT_EQ(std::memcmp(q.data(), &scalar.angles_rad[static_cast<std::size_t>(4 * step)],

@@ -92,7 +92,7 @@ constexpr int calc_plant_packs(int joints) {
   return joints * kPlantFields + kPlantSingles;
 }
 constexpr int calc_scratch_packs(int joints) {
-  return 8 * joints + calc_dynamics_packs(joints);
+  return 10 * joints + calc_dynamics_packs(joints);
 }
 // A recorded step: the joint positions, the efforts, and the tip's position.
 inline constexpr int kRecordSingles = 3;
@@ -134,6 +134,8 @@ struct SegmentCall {
   const T* plant = nullptr;               // calc_plant_packs() packs
   const std::uint8_t* drives = nullptr;   // DriveFlag bits, one byte per joint
   const BalanceGrid* balances = nullptr;  // one per joint, the same in all lanes
+  bool has_joint_plants = false;          // a joint of the robot is not ideal
+  bool elastic = false;                   // at least one joint is
   bool measures_apart = false;            // measured positions are not the joints' true ones
   // The following four are for perturbed plants. `past` is null for others.
   T* past = nullptr;           // a ring of `past_length` x joints packs: the positions of the

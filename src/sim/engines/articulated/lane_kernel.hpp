@@ -20,7 +20,7 @@ template <>
 inline constexpr float kFarthest<float> = 1e4F;
 
 // Simulates the segment. kIdeal: the plants have no part of LanePlant.
-template <class V, class Chain, bool kIdeal = true>
+template <class V, class Chain, PlantKind kPlant = PlantKind::ideal>
 class SegmentKernel {
  public:
   using T = typename V::Scalar;
@@ -55,28 +55,28 @@ class SegmentKernel {
     single(kWorstSquared) = V(0);
     dynamics_.set_posture(q, false);
     for (int step = 0; step < call_.steps; ++step) {
-      plant_.show_measured();
+      plant_.show_measured(q);
       control(step);
       plant_.show_true(q);
       const bool measuring = recording || step >= call_.window_start;
       for (int substep = 1; substep <= call_.substeps; ++substep) {
-        const V* const acting = plant_.calc_effort(&effort_[0], substep_s);
         dynamics_.calc_equations(q, rate);
+        const V* const acting = plant_.calc_effort(&effort_[0], q, rate, substep_s);
         plant_.add_inertia(dynamics_);
         dynamics_.solve(acting, &acceleration_[0]);
         chain_.for_up([&](auto i) __attribute__((always_inline)) {
           rate[i] += substep_s * acceleration_[i];
           const V way = substep_s * rate[i];
           q[i] += way;
-          const V pushed = plant_.get_pushed_way(i, way, substep_s);
-          way_[i] = substep == 1 ? pushed : way_[i] + pushed;
+          way_[i] = substep == 1 ? way : way_[i] + way;
         });
-        plant_.remember();
+        plant_.remember(q);
         dynamics_.set_posture(q, measuring && substep == call_.substeps);
       }
       if (!check(step)) {
         return;
       }
+      plant_.take_motor_ways(&way_[0]);
       add_measures();
       if (measuring) {
         const Vec3<V> tip = dynamics_.calc_tip(q);
@@ -99,7 +99,7 @@ class SegmentKernel {
     }
     // A plant that is not ideal leaves the kernel no room for the PID: the processor would have to
     // decode the instructions of every step again.
-    if (!kIdeal || call_.control != nullptr) [[unlikely]] {
+    if (kPlant == PlantKind::full || call_.control != nullptr) [[unlikely]] {
       (call_.control != nullptr ? call_.control : control_joints<V, controllers::Pid>)(call_, step);
       chain_.for_up([&](auto i) __attribute__((always_inline)) { effort_[i] = field(kEffort)[i]; });
       return;
@@ -216,7 +216,7 @@ class SegmentKernel {
   V* scratch_;
   Chain chain_;
   ChainDynamics<V, Chain> dynamics_;
-  LanePlant<V, Chain, kIdeal> plant_;
+  LanePlant<V, Chain, kPlant> plant_;
   PackList<V, Chain::kJoints> effort_, acceleration_, way_;
 };
 
@@ -260,20 +260,24 @@ void run_known_length(SegmentCall<typename V::Scalar>& call) {
 // Runs plants that are not ideal. They have fewer kernels because each takes long to compile.
 template <class V>
 void run_plant(SegmentCall<typename V::Scalar>& call) {
-  if (call.joints == 4 && !call.prismatic && !call.tilted_gravity &&
-      has_shape(call.flags, 4, kPalletiser)) {
-    return SegmentKernel<V, Palletiser, false>::run(call);
+  const bool palletiser = call.joints == 4 && !call.prismatic && !call.tilted_gravity &&
+                          has_shape(call.flags, 4, kPalletiser);
+  if (!call.has_joint_plants) {
+    return palletiser ? SegmentKernel<V, Palletiser, PlantKind::perturbed>::run(call)
+                      : SegmentKernel<V, AnyChain, PlantKind::perturbed>::run(call);
   }
-  // Perturbed plants of other arms kept the code for any length since version 1.0.
+  if (palletiser) {
+    return SegmentKernel<V, Palletiser, PlantKind::full>::run(call);
+  }
   if constexpr (kHasKnownLengths) {
-    if (!call.prismatic && call.past == nullptr && call.joints == 6) {
-      return SegmentKernel<V, ChainShape<6, kAnyShape, false>, false>::run(call);
+    if (!call.prismatic && call.joints == 6) {
+      return SegmentKernel<V, ChainShape<6, kAnyShape, false>, PlantKind::full>::run(call);
     }
-    if (!call.prismatic && call.past == nullptr && call.joints == 7) {
-      return SegmentKernel<V, ChainShape<7, kAnyShape, false>, false>::run(call);
+    if (!call.prismatic && call.joints == 7) {
+      return SegmentKernel<V, ChainShape<7, kAnyShape, false>, PlantKind::full>::run(call);
     }
   }
-  SegmentKernel<V, AnyChain, false>::run(call);
+  SegmentKernel<V, AnyChain, PlantKind::full>::run(call);
 }
 
 template <class V>

@@ -10,41 +10,132 @@
 
 namespace armwright::articulated {
 
+// The parts of a plant that a segment's kernel can have.
+enum class PlantKind {
+  ideal,      // none
+  perturbed,  // a PlantVariation of ideal joints
+  full,       // all
+};
+
+// The plant of one kind. Its functions take the true positions and rates of the joints.
+template <class V, class Chain, PlantKind kKind>
+class LanePlant;
+
+// Versions of armwright agree in the last bit on perturbed plants. Which products the compiler
+// fuses depends on the whole kernel, so this class stays as it was in version 1.0.
+template <class V, class Chain>
+class LanePlant<V, Chain, PlantKind::perturbed> {
+ public:
+  using T = typename V::Scalar;
+
+  ARMWRIGHT_INLINE LanePlant(SegmentCall<T>& call, const Chain& chain, V*& scratch)
+      : call_(call), chain_(chain), newest_(call.newest) {
+    acting_effort_.place(scratch, call.joints);
+  }
+
+  ARMWRIGHT_INLINE void show_measured(V* q) const {
+    chain_.for_up([&](auto i) __attribute__((always_inline)) {
+      alignas(64) T lanes[V::kLanes];
+      for (int lane = 0; lane < V::kLanes; ++lane) {
+        int place = newest_ - call_.delay[lane];
+        place += place < 0 ? call_.past_length : 0;
+        lanes[lane] = call_.past[(place * joints() + i) * V::kLanes + lane];
+      }
+      const V angle = *reinterpret_cast<const V*>(lanes);
+      const V quantum = single(kQuantum);
+      const V turned = chain_.slides(i) ? angle : lanes::wrap(angle);
+      q[i] = select(quantum > V(0), lanes::round_to_integer(turned / quantum) * quantum, angle);
+    });
+  }
+  ARMWRIGHT_INLINE void show_true(V* q) const {
+    chain_.for_up([&](auto i) __attribute__((always_inline)) { q[i] = past(newest_)[i]; });
+  }
+  // Stores the positions that a substep ended with.
+  ARMWRIGHT_INLINE void remember(const V* q) {
+    newest_ = newest_ + 1 == call_.past_length ? 0 : newest_ + 1;
+    chain_.for_up([&](auto i) __attribute__((always_inline)) { past(newest_)[i] = q[i]; });
+  }
+
+  // Returns the efforts that act on the joints, given those of the controllers.
+  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, const V* q, const V* rate,
+                                        V /*substep_s*/) {
+    chain_.for_up([&](auto i) __attribute__((always_inline)) {
+      V acting = effort[i];
+      if (!chain_.slides(i)) {
+        V sine;
+        V cosine;
+        lanes::calc_sine_cosine(lanes::wrap(q[i]) * single(kRippleCycles) + field(kRipplePhase, i),
+                                sine, cosine);
+        acting = acting + acting * (field(kRipple, i) * sine);
+      }
+      const V sliding = max(V(-1), min(V(1), rate[i] * single(kRateScale)));
+      acting_effort_[i] = acting - (field(kViscous, i) * rate[i] + field(kCoulomb, i) * sliding);
+    });
+    return &acting_effort_[0];
+  }
+  template <class Dynamics>
+  ARMWRIGHT_INLINE void add_inertia(Dynamics& /*dynamics*/) const {}
+  ARMWRIGHT_INLINE void take_motor_ways(V* /*way*/) const {}
+
+ private:
+  ARMWRIGHT_INLINE int joints() const { return chain_.joints(); }
+  ARMWRIGHT_INLINE V field(PlantField field, int joint) const {
+    return reinterpret_cast<const V*>(call_.plant)[field * joints() + joint];
+  }
+  ARMWRIGHT_INLINE V single(PlantSingle field) const {
+    return reinterpret_cast<const V*>(call_.plant)[kPlantFields * joints() + field];
+  }
+  ARMWRIGHT_INLINE V* past(int place) const {
+    return reinterpret_cast<V*>(call_.past) + place * joints();
+  }
+
+  SegmentCall<T>& call_;
+  const Chain& chain_;
+  int newest_;
+  PackList<V, Chain::kJoints> acting_effort_;
+};
+
 // The steps of the plants of a pack of lanes. The functions loop over the joints and are not
 // inlined: the kernels are so long that the processor would run out of decoded instructions.
 template <class V>
 class PlantStep {
  public:
   using T = typename V::Scalar;
+  using Perturbed = LanePlant<V, ChainShape<0, kAnyShape, true>, PlantKind::perturbed>;
 
-  // Stores the true positions in `held`, and replaces them by the measured ones. `newest` is the
-  // place of the true positions in the ring of past ones.
-  __attribute__((noinline)) static void show_measured(const SegmentCall<T>& call, int newest,
-                                                      V* held) {
+  // Stores the true positions in `held`, and replaces them by the measured ones.
+  __attribute__((noinline)) static void show_measured(const SegmentCall<T>& call,
+                                                      const Perturbed& perturbed, V* held) {
     const PlantStep plant(call);
     for (int i = 0; i < call.joints; ++i) {
-      V& q = plant.state(kQ, i);
-      held[i] = q;
-      if (call.past != nullptr) {
-        q = plant.recall(i, newest);
-      } else if (plant.has(kMeasuresMotor, i)) {
-        q = plant.state(kMotor, i);
-      }
+      held[i] = plant.state(kQ, i);
+    }
+    plant.copy_measured(&plant.state(kQ, 0));
+    if (call.past != nullptr) {
+      perturbed.show_measured(&plant.state(kQ, 0));
     }
   }
-  // Stores the positions that a substep ended with at the place `newest`.
-  __attribute__((noinline)) static void remember(const SegmentCall<T>& call, int newest) {
-    const PlantStep plant(call);
-    for (int i = 0; i < call.joints; ++i) {
-      plant.past(newest)[i] = plant.state(plant.has(kMeasuresMotor, i) ? kMotor : kQ, i);
-    }
+  // Stores the positions that a substep ended with. `memory` is for one pack per joint.
+  __attribute__((noinline)) static void remember(const SegmentCall<T>& call, Perturbed& perturbed,
+                                                 V* memory) {
+    PlantStep(call).copy_measured(memory);
+    perturbed.remember(memory);
   }
   // Replaces the controllers' efforts by those that act on the links during a substep, and computes
-  // the inertia that joins each joint. Moves the motors of elastic joints to the end of the substep.
-  // `dry` is memory for one fraction per joint.
-  __attribute__((noinline)) static void act(const SegmentCall<T>& call, V substep_s, V* efforts,
-                                            V* inertia, Fraction<V>* dry) {
+  // the inertia that joins each joint. Moves the motors of elastic joints to the end of the substep,
+  // and adds that to their `ways`. `dry` is memory for one fraction per joint.
+  __attribute__((noinline)) static void act(const SegmentCall<T>& call, Perturbed& perturbed,
+                                            V substep_s, V* efforts, V* inertia, V* ways,
+                                            Fraction<V>* dry) {
     const PlantStep plant(call);
+    const V* wanted = efforts;
+    if (call.past != nullptr) {
+      V* const rates = inertia;
+      for (int i = 0; i < call.joints; ++i) {
+        rates[i] = plant.state(plant.has(kElastic, i) ? kMotorRate : kRate, i);
+      }
+      wanted = perturbed.calc_effort(efforts, &plant.state(kQ, 0), rates, substep_s);
+    }
     // All quotients come before all divisions, so that the processor works on several joints at
     // once.
     for (int i = 0; i < call.joints; ++i) {
@@ -53,12 +144,9 @@ class PlantStep {
       }
     }
     for (int i = 0; i < call.joints; ++i) {
-      V effort = efforts[i];
-      if (call.past != nullptr) {
-        effort = plant.perturb(i, effort);
-      }
+      V effort = wanted[i];
       if (plant.has(kElastic, i)) {
-        effort = plant.pass_spring(i, effort, substep_s, dry);
+        effort = plant.pass_spring(i, effort, substep_s, dry, ways[i]);
         inertia[i] = V(0);
       } else {
         inertia[i] = plant.rub(i, plant.state(kRate, i), substep_s, dry, effort);
@@ -67,6 +155,15 @@ class PlantStep {
         effort += calc_balance(call.balances[i], plant.state(kQ, i), plant.slides(i));
       }
       efforts[i] = effort;
+    }
+  }
+  __attribute__((noinline)) static void take_motor_ways(const SegmentCall<T>& call, V* motor_way,
+                                                        V* way) {
+    for (int i = 0; i < call.joints; ++i) {
+      if ((call.drives[i] & kElastic) != 0) {
+        way[i] = motor_way[i];
+        motor_way[i] = V(0);
+      }
     }
   }
 
@@ -80,47 +177,19 @@ class PlantStep {
   ARMWRIGHT_INLINE V number(PlantField field, int joint) const {
     return reinterpret_cast<const V*>(call_.plant)[field * call_.joints + joint];
   }
-  ARMWRIGHT_INLINE V single(PlantSingle field) const {
-    return reinterpret_cast<const V*>(call_.plant)[kPlantFields * call_.joints + field];
-  }
   ARMWRIGHT_INLINE V& state(StateField field, int joint) const {
     return reinterpret_cast<V*>(call_.state)[field * call_.joints + joint];
   }
-  ARMWRIGHT_INLINE V* past(int place) const {
-    return reinterpret_cast<V*>(call_.past) + place * call_.joints;
-  }
-
-  // Returns the position that the controller measures, delayed and rounded.
-  ARMWRIGHT_INLINE V recall(int i, int newest) const {
-    alignas(64) T lanes[V::kLanes];
-    for (int lane = 0; lane < V::kLanes; ++lane) {
-      int place = newest - call_.delay[lane];
-      place += place < 0 ? call_.past_length : 0;
-      lanes[lane] = call_.past[(place * call_.joints + i) * V::kLanes + lane];
+  // Copies the positions of the measured sides.
+  ARMWRIGHT_INLINE void copy_measured(V* positions) const {
+    for (int i = 0; i < call_.joints; ++i) {
+      positions[i] = state(has(kMeasuresMotor, i) ? kMotor : kQ, i);
     }
-    const V angle = *reinterpret_cast<const V*>(lanes);
-    const V quantum = single(kQuantum);
-    const V turned = slides(i) ? angle : lanes::wrap(angle);
-    return select(quantum > V(0), lanes::round_to_integer(turned / quantum) * quantum, angle);
-  }
-
-  // Returns the effort with the perturbation's ripple and friction.
-  ARMWRIGHT_INLINE V perturb(int i, V effort) const {
-    if (!slides(i)) {
-      V sine;
-      V cosine;
-      lanes::calc_sine_cosine(
-          lanes::wrap(state(kQ, i)) * single(kRippleCycles) + number(kRipplePhase, i), sine,
-          cosine);
-      effort = effort + effort * (number(kRipple, i) * sine);
-    }
-    const V rate = state(has(kElastic, i) ? kMotorRate : kRate, i);
-    const V sliding = max(V(-1), min(V(1), rate * single(kRateScale)));
-    return effort - (number(kViscous, i) * rate + number(kCoulomb, i) * sliding);
   }
 
   // Moves the motor by a substep and returns the spring's effort at its start.
-  ARMWRIGHT_INLINE V pass_spring(int i, V effort, V substep_s, const Fraction<V>* dry) const {
+  ARMWRIGHT_INLINE V pass_spring(int i, V effort, V substep_s, const Fraction<V>* dry,
+                                 V& way) const {
     V& place = state(kMotor, i);
     V& rate = state(kMotorRate, i);
     const V spring = number(kStiffness, i) * (place - state(kQ, i)) +
@@ -128,7 +197,9 @@ class PlantStep {
     effort -= spring;
     const V inertia = rub(i, rate, substep_s, dry, effort);
     rate += substep_s * (effort / inertia);
-    place += substep_s * rate;
+    const V moved = substep_s * rate;
+    place += moved;
+    way += moved;
     return spring;
   }
 
@@ -153,30 +224,30 @@ class PlantStep {
   const SegmentCall<T>& call_;
 };
 
-template <class V, class Chain, bool kIdeal>
-class LanePlant;
-
 template <class V, class Chain>
-class LanePlant<V, Chain, false> {
+class LanePlant<V, Chain, PlantKind::full> {
  public:
   using T = typename V::Scalar;
 
   ARMWRIGHT_INLINE LanePlant(SegmentCall<T>& call, const Chain& chain, V*& scratch)
       : call_(call),
         chain_(chain),
-        newest_(call.newest),
+        any_chain_(call.joints, call.flags, call.tilted_gravity),
+        perturbed_(call, any_chain_, scratch),
         effort_(scratch),
         inertia_(scratch + call.joints),
         held_(scratch + 2 * call.joints),
-        dry_(reinterpret_cast<Fraction<V>*>(scratch + 3 * call.joints)) {
-    scratch += 5 * call.joints;
+        motor_way_(scratch + 3 * call.joints),
+        dry_(reinterpret_cast<Fraction<V>*>(scratch + 4 * call.joints)) {
+    chain_.for_up([&](auto i) __attribute__((always_inline)) { motor_way_[i] = V(0); });
+    scratch += 6 * call.joints;
   }
 
   // show_measured() replaces the true positions in the state by those that the controllers measure;
   // show_true() restores them.
-  ARMWRIGHT_INLINE void show_measured() const {
+  ARMWRIGHT_INLINE void show_measured(V* /*q*/) const {
     if (call_.measures_apart) {
-      PlantStep<V>::show_measured(call_, newest_, held_);
+      PlantStep<V>::show_measured(call_, perturbed_, held_);
     }
   }
   ARMWRIGHT_INLINE void show_true(V* q) const {
@@ -185,18 +256,18 @@ class LanePlant<V, Chain, false> {
     }
   }
   // Stores the positions that a substep ended with.
-  ARMWRIGHT_INLINE void remember() {
+  ARMWRIGHT_INLINE void remember(const V* /*q*/) {
     if (call_.past != nullptr) {
-      newest_ = newest_ + 1 == call_.past_length ? 0 : newest_ + 1;
-      PlantStep<V>::remember(call_, newest_);
+      PlantStep<V>::remember(call_, perturbed_, held_);
     }
   }
 
   // Returns the efforts that act on the links during a substep, given those of the controllers.
   // Moves the motors of elastic joints to its end.
-  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, V substep_s) {
+  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, const V* /*q*/, const V* /*rate*/,
+                                        V substep_s) {
     chain_.for_up([&](auto i) __attribute__((always_inline)) { effort_[i] = effort[i]; });
-    PlantStep<V>::act(call_, substep_s, effort_, inertia_, dry_);
+    PlantStep<V>::act(call_, perturbed_, substep_s, effort_, inertia_, motor_way_, dry_);
     return effort_;
   }
   // Adds the inertia of the motors of rigid joints, and what is implicit in the friction.
@@ -205,35 +276,39 @@ class LanePlant<V, Chain, false> {
     chain_.for_up([&](auto i)
                       __attribute__((always_inline)) { dynamics.add_inertia(i, inertia_[i]); });
   }
-  // Returns how far a controller's effort has pushed in the substep: the way of the link, or of the
-  // motor of an elastic joint.
-  ARMWRIGHT_INLINE V get_pushed_way(int i, V way, V substep_s) const {
-    return (call_.drives[i] & kElastic) != 0
-               ? substep_s * reinterpret_cast<const V*>(call_.state)[kMotorRate * call_.joints + i]
-               : way;
+  // Replaces the ways of elastic joints' links in the control period by those of their motors, which
+  // the controllers' efforts push.
+  ARMWRIGHT_INLINE void take_motor_ways(V* way) const {
+    if (call_.elastic) {
+      PlantStep<V>::take_motor_ways(call_, motor_way_, way);
+    }
   }
 
  private:
   SegmentCall<T>& call_;
   Chain chain_;  // a copy: a reference would keep the whole kernel in memory
-  int newest_;
-  V *effort_, *inertia_, *held_;  // one pack per joint
-  Fraction<V>* dry_;              // one per joint
+  ChainShape<0, kAnyShape, true> any_chain_;
+  typename PlantStep<V>::Perturbed perturbed_;
+  V *effort_, *inertia_, *held_, *motor_way_;  // one pack per joint
+  Fraction<V>* dry_;                           // one per joint
 };
 
 // The ideal plant: every function does nothing.
 template <class V, class Chain>
-class LanePlant<V, Chain, true> {
+class LanePlant<V, Chain, PlantKind::ideal> {
  public:
   ARMWRIGHT_INLINE LanePlant(SegmentCall<typename V::Scalar>& /*call*/, const Chain& /*chain*/,
                              V*& /*scratch*/) {}
-  ARMWRIGHT_INLINE void show_measured() const {}
+  ARMWRIGHT_INLINE void show_measured(V* /*q*/) const {}
   ARMWRIGHT_INLINE void show_true(V* /*q*/) const {}
-  ARMWRIGHT_INLINE void remember() const {}
-  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, V /*substep_s*/) const { return effort; }
+  ARMWRIGHT_INLINE void remember(const V* /*q*/) const {}
+  ARMWRIGHT_INLINE const V* calc_effort(const V* effort, const V* /*q*/, const V* /*rate*/,
+                                        V /*substep_s*/) const {
+    return effort;
+  }
   template <class Dynamics>
   ARMWRIGHT_INLINE void add_inertia(Dynamics& /*dynamics*/) const {}
-  ARMWRIGHT_INLINE V get_pushed_way(int /*joint*/, V way, V /*substep_s*/) const { return way; }
+  ARMWRIGHT_INLINE void take_motor_ways(V* /*way*/) const {}
 };
 
 }  // namespace armwright::articulated
