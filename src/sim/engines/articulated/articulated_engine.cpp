@@ -62,7 +62,7 @@ void check_design(const ArmDesign& design, const RobotModel& robot) {
 template <class T>
 class ArticulatedEngine final : public PhysicsEngine {
  public:
-  explicit ArticulatedEngine(SimdLevel level) : kernel_(get_kernel<T>(level)) {}
+  explicit ArticulatedEngine(SimdLevel level) : kernels_(get_kernels<T>(level)) {}
 
   std::vector<TrackingResult> simulate(const TrackingSetup& setup,
                                        std::span<const TrackingJob> jobs) const override {
@@ -91,11 +91,13 @@ class ArticulatedEngine final : public PhysicsEngine {
       });
       (found == alike.end() ? alike.emplace_back() : *found).push_back(i);
     }
-    const std::size_t most = kGroups * static_cast<std::size_t>(kernel_.lanes);
     for (const std::vector<std::size_t>& group : alike) {
+      const bool has_plant = get_setup(group.front()).robot().has_plant();
+      const Kernel<T>& kernel = has_plant ? kernels_.plant : kernels_.ideal;
+      const std::size_t most = kGroups * static_cast<std::size_t>(kernel.lanes);
       for (std::size_t first = 0; first < group.size(); first += most) {
         const std::size_t count = std::min(most, group.size() - first);
-        simulate_block(setup, kernel_, jobs,
+        simulate_block(setup, kernel, jobs,
                        std::span<const std::size_t>(group).subspan(first, count), results);
       }
     }
@@ -116,12 +118,12 @@ class ArticulatedEngine final : public PhysicsEngine {
   }
 
   BatchSize batch_size() const override {
-    const auto lanes = static_cast<std::size_t>(kernel_.lanes);
+    const auto lanes = static_cast<std::size_t>(kernels_.ideal.lanes);
     return {lanes, kGroups * lanes};
   }
 
  private:
-  Kernel<T> kernel_;
+  Kernels<T> kernels_;
 };
 
 }  // namespace

@@ -9,13 +9,20 @@ namespace armwright::articulated {
 
 struct Avx2Level;
 
+template <class T>
+using Pack = lanes::Pack<T, 32 / sizeof(T), Avx2Level>;
+
 void find_control_avx2(int law, ControlFunction<double>& control) {
-  control =
-      find_control<lanes::Pair<lanes::Pack<double, 4, Avx2Level>>>(law, controllers::AllLaws{});
+  control = find_control<lanes::Pair<Pack<double>>>(law, controllers::AllLaws{});
 }
 void find_control_avx2(int law, ControlFunction<float>& control) {
-  control =
-      find_control<lanes::Pair<lanes::Pack<float, 8, Avx2Level>>>(law, controllers::AllLaws{});
+  control = find_control<lanes::Pair<Pack<float>>>(law, controllers::AllLaws{});
+}
+void find_plant_control_avx2(int law, ControlFunction<double>& control) {
+  control = find_control<Pack<double>>(law, controllers::AllLaws{});
+}
+void find_plant_control_avx2(int law, ControlFunction<float>& control) {
+  control = find_control<Pack<float>>(law, controllers::AllLaws{});
 }
 
 }  // namespace armwright::articulated

@@ -134,7 +134,6 @@ struct SegmentCall {
   const T* plant = nullptr;               // calc_plant_packs() packs
   const std::uint8_t* drives = nullptr;   // DriveFlag bits, one byte per joint
   const BalanceGrid* balances = nullptr;  // one per joint, the same in all lanes
-  bool has_joint_plants = false;          // a joint of the robot is not ideal
   bool elastic = false;                   // at least one joint is
   bool measures_apart = false;            // measured positions are not the joints' true ones
   // The following four are for perturbed plants. `past` is null for others.
@@ -152,36 +151,39 @@ struct SegmentCall {
 };
 
 template <class T>
+using RunSegment = void(SegmentCall<T>& call);
+template <class T>
 using ControlFunction = void (*)(SegmentCall<T>& call, int step);
+// Sets SegmentCall::control for the law at that place of the table.
+template <class T>
+using FindControl = void(int law, ControlFunction<T>& control);
 
 template <class T>
 struct Kernel {
-  void (*run_segment)(SegmentCall<T>& call) = nullptr;
+  RunSegment<T>* run_segment = nullptr;
   int lanes = 1;
-  // Sets SegmentCall::control for the law at that place of the table.
-  void (*find_control)(int law, ControlFunction<T>& control) = nullptr;
+  FindControl<T>* find_control = nullptr;
 };
 
-// Returns the kernel of a level, which this CPU must support.
 template <class T>
-Kernel<T> get_kernel(SimdLevel level);
+struct Kernels {
+  Kernel<T> ideal;  // of ideal joints, with or without a perturbation
+  Kernel<T> plant;  // of joints that have plants
+};
+// Returns the kernels of a level, which this CPU must support.
+template <class T>
+Kernels<T> get_kernels(SimdLevel level);
 
-// Each of these is defined in the file that is compiled for its instruction set.
-void run_segment_scalar(SegmentCall<double>& call);
-void run_segment_scalar(SegmentCall<float>& call);
-void run_segment_sse2(SegmentCall<double>& call);
-void run_segment_sse2(SegmentCall<float>& call);
-void run_segment_avx2(SegmentCall<double>& call);
-void run_segment_avx2(SegmentCall<float>& call);
-void run_segment_avx512(SegmentCall<double>& call);
-void run_segment_avx512(SegmentCall<float>& call);
-void find_control_scalar(int law, ControlFunction<double>& control);
-void find_control_scalar(int law, ControlFunction<float>& control);
-void find_control_sse2(int law, ControlFunction<double>& control);
-void find_control_sse2(int law, ControlFunction<float>& control);
-void find_control_avx2(int law, ControlFunction<double>& control);
-void find_control_avx2(int law, ControlFunction<float>& control);
-void find_control_avx512(int law, ControlFunction<double>& control);
-void find_control_avx512(int law, ControlFunction<float>& control);
+// Each of these is defined in a file that is compiled for its instruction set. Kernels of plants
+// have half as many lanes with AVX2, because their code is longer: the processor's store of decoded
+// instructions must hold it.
+RunSegment<double> run_segment_scalar, run_segment_sse2, run_segment_avx2, run_segment_avx512;
+RunSegment<double> run_plant_scalar, run_plant_sse2, run_plant_avx2, run_plant_avx512;
+FindControl<double> find_control_scalar, find_control_sse2, find_control_avx2, find_control_avx512;
+FindControl<double> find_plant_control_avx2;
+RunSegment<float> run_segment_scalar, run_segment_sse2, run_segment_avx2, run_segment_avx512;
+RunSegment<float> run_plant_scalar, run_plant_sse2, run_plant_avx2, run_plant_avx512;
+FindControl<float> find_control_scalar, find_control_sse2, find_control_avx2, find_control_avx512;
+FindControl<float> find_plant_control_avx2;
 
 }  // namespace armwright::articulated

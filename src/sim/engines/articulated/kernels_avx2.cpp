@@ -11,8 +11,14 @@ struct Avx2Level;
 void run_segment_avx2(SegmentCall<double>& call) {
   run_segment<lanes::Pair<lanes::Pack<double, 4, Avx2Level>>>(call);
 }
+void run_plant_avx2(SegmentCall<double>& call) {
+  run_plant<lanes::Pack<double, 4, Avx2Level>>(call);
+}
 void run_segment_avx2(SegmentCall<float>& call) {
   run_segment<lanes::Pair<lanes::Pack<float, 8, Avx2Level>>>(call);
+}
+void run_plant_avx2(SegmentCall<float>& call) {
+  run_plant<lanes::Pack<float, 8, Avx2Level>>(call);
 }
 
 }  // namespace armwright::articulated

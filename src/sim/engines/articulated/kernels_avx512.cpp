@@ -11,8 +11,14 @@ struct Avx512Level;
 void run_segment_avx512(SegmentCall<double>& call) {
   run_segment<lanes::Pack<double, 8, Avx512Level>>(call);
 }
+void run_plant_avx512(SegmentCall<double>& call) {
+  run_plant<lanes::Pack<double, 8, Avx512Level>>(call);
+}
 void run_segment_avx512(SegmentCall<float>& call) {
   run_segment<lanes::Pack<float, 16, Avx512Level>>(call);
+}
+void run_plant_avx512(SegmentCall<float>& call) {
+  run_plant<lanes::Pack<float, 16, Avx512Level>>(call);
 }
 
 }  // namespace armwright::articulated

@@ -8,8 +8,14 @@ struct ScalarLevel;
 void run_segment_scalar(SegmentCall<double>& call) {
   run_segment<lanes::Single<double, ScalarLevel>>(call);
 }
+void run_plant_scalar(SegmentCall<double>& call) {
+  run_plant<lanes::Single<double, ScalarLevel>>(call);
+}
 void run_segment_scalar(SegmentCall<float>& call) {
   run_segment<lanes::Single<float, ScalarLevel>>(call);
+}
+void run_plant_scalar(SegmentCall<float>& call) {
+  run_plant<lanes::Single<float, ScalarLevel>>(call);
 }
 
 }  // namespace armwright::articulated

@@ -53,7 +53,7 @@ ARMWRIGHT_INLINE V control_joint(const SegmentCall<typename V::Scalar>& call, V*
 }
 
 template <class V, class Law>
-__attribute__((noinline)) void control_joints(SegmentCall<typename V::Scalar>& call, int step) {
+void control_joints(SegmentCall<typename V::Scalar>& call, int step) {
   V* const state = reinterpret_cast<V*>(call.state);
   const V period_s = call.period_s;
   const V frequency_hz = typename V::Scalar{1} / call.period_s;

@@ -76,7 +76,7 @@ class SegmentKernel {
       if (!check(step)) {
         return;
       }
-      plant_.take_motor_ways(&way_[0]);
+      plant_.take_motor_ways(way_);
       add_measures();
       if (measuring) {
         const Vec3<V> tip = dynamics_.calc_tip(q);
@@ -97,10 +97,8 @@ class SegmentKernel {
         __builtin_prefetch(call_.targets[lane] + ahead * joints());
       }
     }
-    // A plant that is not ideal leaves the kernel no room for the PID: the processor would have to
-    // decode the instructions of every step again.
-    if (kPlant == PlantKind::full || call_.control != nullptr) [[unlikely]] {
-      (call_.control != nullptr ? call_.control : control_joints<V, controllers::Pid>)(call_, step);
+    if (call_.control != nullptr) [[unlikely]] {
+      call_.control(call_, step);
       chain_.for_up([&](auto i) __attribute__((always_inline)) { effort_[i] = field(kEffort)[i]; });
       return;
     }
@@ -231,10 +229,16 @@ using AnyChain = ChainShape<0, kAnyShape, true>;
 using Palletiser =
     std::conditional_t<kHasKnownLengths, ChainShape<4, kPalletiser, false>, AnyChain>;
 
+template <class T>
+bool is_palletiser(const SegmentCall<T>& call) {
+  return call.joints == 4 && !call.prismatic && !call.tilted_gravity &&
+         has_shape(call.flags, 4, kPalletiser);
+}
+
 // Runs the kernel for the shape above, or for chains of one to eight revolute joints.
 template <class V>
 void run_known_length(SegmentCall<typename V::Scalar>& call) {
-  if (call.joints == 4 && !call.tilted_gravity && has_shape(call.flags, 4, kPalletiser)) {
+  if (is_palletiser(call)) {
     return SegmentKernel<V, Palletiser>::run(call);
   }
   switch (call.joints) {
@@ -257,33 +261,12 @@ void run_known_length(SegmentCall<typename V::Scalar>& call) {
   }
 }
 
-// Runs plants that are not ideal. They have fewer kernels because each takes long to compile.
-template <class V>
-void run_plant(SegmentCall<typename V::Scalar>& call) {
-  const bool palletiser = call.joints == 4 && !call.prismatic && !call.tilted_gravity &&
-                          has_shape(call.flags, 4, kPalletiser);
-  if (!call.has_joint_plants) {
-    return palletiser ? SegmentKernel<V, Palletiser, PlantKind::perturbed>::run(call)
-                      : SegmentKernel<V, AnyChain, PlantKind::perturbed>::run(call);
-  }
-  if (palletiser) {
-    return SegmentKernel<V, Palletiser, PlantKind::full>::run(call);
-  }
-  if constexpr (kHasKnownLengths) {
-    if (!call.prismatic && call.joints == 6) {
-      return SegmentKernel<V, ChainShape<6, kAnyShape, false>, PlantKind::full>::run(call);
-    }
-    if (!call.prismatic && call.joints == 7) {
-      return SegmentKernel<V, ChainShape<7, kAnyShape, false>, PlantKind::full>::run(call);
-    }
-  }
-  SegmentKernel<V, AnyChain, PlantKind::full>::run(call);
-}
-
+// Runs ideal joints, with or without a perturbation.
 template <class V>
 void run_segment(SegmentCall<typename V::Scalar>& call) {
-  if (call.plant != nullptr) {
-    return run_plant<V>(call);
+  if (call.plant != nullptr) {  // fewer kernels, because each takes long to compile
+    return is_palletiser(call) ? SegmentKernel<V, Palletiser, PlantKind::perturbed>::run(call)
+                               : SegmentKernel<V, AnyChain, PlantKind::perturbed>::run(call);
   }
   constexpr int kLongestKnown = 8;
   if constexpr (kHasKnownLengths) {
@@ -292,6 +275,32 @@ void run_segment(SegmentCall<typename V::Scalar>& call) {
     }
   }
   SegmentKernel<V, AnyChain>::run(call);
+}
+
+template <class V, PlantKind kKind>
+void run_plant_kind(SegmentCall<typename V::Scalar>& call) {
+  if (is_palletiser(call)) {
+    return SegmentKernel<V, Palletiser, kKind>::run(call);
+  }
+  if constexpr (kHasKnownLengths) {
+    if (!call.prismatic && call.joints == 6) {
+      return SegmentKernel<V, ChainShape<6, kAnyShape, false>, kKind>::run(call);
+    }
+    if (!call.prismatic && call.joints == 7) {
+      return SegmentKernel<V, ChainShape<7, kAnyShape, false>, kKind>::run(call);
+    }
+  }
+  SegmentKernel<V, AnyChain, kKind>::run(call);
+}
+
+// Runs joints that have plants.
+template <class V>
+void run_plant(SegmentCall<typename V::Scalar>& call) {
+  if (call.elastic || call.past != nullptr) {
+    run_plant_kind<V, PlantKind::full>(call);
+  } else {
+    run_plant_kind<V, PlantKind::rigid>(call);
+  }
 }
 
 }  // namespace armwright::articulated

@@ -23,10 +23,9 @@ inline std::uint8_t get_drive_flags(const JointPlant& plant) {
 template <class T>
 void set_drives(const std::vector<std::uint8_t>& drives, bool perturbed, SegmentCall<T>& call) {
   call.drives = drives.data();
-  call.has_joint_plants = call.elastic = false;
+  call.elastic = false;
   call.measures_apart = perturbed;
   for (const std::uint8_t flags : drives) {
-    call.has_joint_plants |= flags != 0;
     call.elastic |= (flags & kElastic) != 0;
     call.measures_apart |= (flags & kMeasuresMotor) != 0;
   }

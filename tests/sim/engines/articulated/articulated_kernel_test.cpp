@@ -133,7 +133,7 @@ Outcome simulate_one_arm(const LaneCase& one, const Timeline& time) {
 template <class T>
 std::vector<Outcome> simulate_lanes(SimdLevel level, const std::vector<LaneCase>& cases,
                                     const Timeline& time, int allowed = 0xff) {
-  const Kernel<T> kernel = get_kernel<T>(level);
+  const Kernel<T> kernel = get_kernels<T>(level).ideal;
   const auto lanes = static_cast<std::size_t>(kernel.lanes);
   const std::size_t n = cases.front().model.joint_count();
   const int joints = static_cast<int>(n);
@@ -237,7 +237,7 @@ constexpr double kTolerance = 1e-9;
 template <class T>
 std::vector<LaneCase> draw_lanes(SimdLevel level, const RobotModel& kind, const Timeline& time) {
   std::vector<LaneCase> cases;
-  for (int lane = 0; lane < get_kernel<T>(level).lanes; ++lane) {
+  for (int lane = 0; lane < get_kernels<T>(level).ideal.lanes; ++lane) {
     cases.push_back(draw_lane(kind, lane, time));
   }
   return cases;
@@ -322,7 +322,7 @@ std::vector<LaneCase> make_palletiser_cases(int lanes, const Timeline& time) {
 TEST(Kernels, OfThePalletiserDoAsThoseOfAnyShape) {
   const Timeline time;
   for (const SimdLevel level : find_levels()) {
-    const auto cases = make_palletiser_cases(get_kernel<double>(level).lanes, time);
+    const auto cases = make_palletiser_cases(get_kernels<double>(level).ideal.lanes, time);
     const auto known = simulate_lanes<double>(level, cases, time);
     for (const int missing :
          {kAlongX | 0, kRightAngle | 0, kSameAxis | 0, kAlongX | kRightAngle | kSameAxis}) {

@@ -293,7 +293,7 @@ template <class T>
 double compare_lanes(const ControllerRow& row, const std::vector<double>& gains, SimdLevel level,
                      EffortLimits limits) {
   using namespace articulated;
-  const Kernel<T> kernel = get_kernel<T>(level);
+  const Kernel<T> kernel = get_kernels<T>(level).ideal;
   const auto lanes = static_cast<std::size_t>(kernel.lanes);
   constexpr int kJoints = 2;
   constexpr int kSteps = 200;
