@@ -92,7 +92,7 @@ constexpr int calc_plant_packs(int joints) {
   return joints * kPlantFields + kPlantSingles;
 }
 constexpr int calc_scratch_packs(int joints) {
-  return 10 * joints + calc_dynamics_packs(joints);
+  return 9 * joints + calc_dynamics_packs(joints);
 }
 // A recorded step: the joint positions, the efforts, and the tip's position.
 inline constexpr int kRecordSingles = 3;
