@@ -5,8 +5,10 @@
 #include <ode/ode.h>
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "measure.hpp"
@@ -168,45 +170,94 @@ RobotModel make_plant(RobotModel robot, std::size_t parts) {
   return robot;
 }
 
-// Measures what the plant of real joints costs the engine `articulated` per robot step.
+// One case of an arm's own task, as many times as the engine `articulated` takes together.
+struct Work {
+  Work(const TrackingSetup& its_setup, ArmDesign its_design, double gain_factor,
+       const TestCase& test_case)
+      : setup(its_setup), design(std::move(its_design)), targets(setup.make_targets(test_case)) {
+    for (JointDrive& drive : design.joints) {
+      for (double& gain : drive.gains) {
+        gain *= gain_factor;
+      }
+    }
+    jobs.resize(engine->batch_size().largest);
+    for (TrackingJob& job : jobs) {
+      job.design = &design;
+      job.targets = &targets;
+    }
+  }
+  // Returns the CPU time per robot step.
+  double measure_ns() const {
+    const double time_s =
+        measure_cpu_s([&] { benchmark::DoNotOptimize(engine->simulate(setup, jobs)); });
+    return 1e9 * time_s / (static_cast<double>(jobs.size()) * targets.steps);
+  }
+  bool reaches_end() const {
+    return std::ranges::all_of(engine->simulate(setup, jobs), [&](const TrackingResult& result) {
+      return result.steps == targets.steps;
+    });
+  }
+
+  std::unique_ptr<PhysicsEngine> engine = make_engine("articulated");
+  const TrackingSetup& setup;
+  ArmDesign design;
+  TargetTable targets;
+  std::vector<TrackingJob> jobs;
+};
+
+void compare_work(benchmark::State& state, const Work& work, const Work& reference) {
+  std::vector<double> own, other, ratio;
+  for (auto _ : state) {
+    own.push_back(work.measure_ns());
+    other.push_back(reference.measure_ns());
+    ratio.push_back(own.back() / other.back());
+  }
+  state.counters["ns_per_step"] = calc_median(own);
+  state.counters["reference_ns_per_step"] = calc_median(other);
+  state.counters["ratio"] = calc_median(ratio);
+  if (!work.reaches_end() || !reference.reaches_end()) {
+    state.SkipWithError("a simulation did not reach the end");
+  }
+}
+
+// Measures what the plant of real joints costs per robot step.
 void BM_PlantAgainstIdealArm(benchmark::State& state) {
   const LoadedProblem problem = load_problem("q1-complex");
   const TrackingSetup& ideal = problem.tracking()->setup();
   const auto parts = static_cast<std::size_t>(state.range(0));
   const TrackingSetup full(make_plant(ideal.robot(), parts), ideal.task());
-  ArmDesign design = load_design("table-a1").design;
-  for (JointDrive& drive : design.joints) {
-    for (double& gain : drive.gains) {
-      gain *= 0.15;  // so that springs do not swing up
-    }
-  }
-  const TargetTable targets =
-      ideal.make_targets(problem.tracking()->get_set("test/2").make_case(0));
-  const auto engine = make_engine("articulated");
-  std::vector<TrackingJob> jobs(engine->batch_size().largest);
-  for (TrackingJob& job : jobs) {
-    job.design = &design;
-    job.targets = &targets;
-  }
-  std::vector<double> with, without, ratio;
-  for (auto _ : state) {
-    with.push_back(measure_cpu_s([&] { benchmark::DoNotOptimize(engine->simulate(full, jobs)); }));
-    without.push_back(
-        measure_cpu_s([&] { benchmark::DoNotOptimize(engine->simulate(ideal, jobs)); }));
-    ratio.push_back(with.back() / without.back());
-  }
-  const double steps = static_cast<double>(jobs.size()) * targets.steps;
-  state.counters["plant_ns_per_step"] = 1e9 * calc_median(with) / steps;
-  state.counters["ideal_ns_per_step"] = 1e9 * calc_median(without) / steps;
-  state.counters["ratio"] = calc_median(ratio);
-  for (const TrackingResult& result : engine->simulate(full, jobs)) {
-    if (result.steps != targets.steps) {
-      state.SkipWithError("a simulation did not reach the end");
-    }
-  }
+  const ArmDesign design = load_design("table-a1").design;
+  const TestCase test_case = problem.tracking()->get_set("test/2").make_case(0);
+  constexpr double kGainFactor = 0.15;  // so that springs do not swing up
+  compare_work(state, {full, design, kGainFactor, test_case},
+               {ideal, design, kGainFactor, test_case});
   state.SetLabel("with " + kPlantParts[parts]);
 }
 BENCHMARK(BM_PlantAgainstIdealArm)->DenseRange(0, 4)->Iterations(60)->Unit(benchmark::kMillisecond);
+
+// Compares a step of an arm of six or seven joints with one of the thesis's arm.
+void BM_MoreJointsAgainstThesisArm(benchmark::State& state) {
+  const std::string robot = state.range(0) == 7 ? "arm7" : "irb4600_six";
+  const LoadedProblem thesis = load_problem("q1-complex");
+  const LoadedProblem problem = load_problem("robot", std::vector{"robot.urdf=" + robot});
+  const TrackingConfig& config = problem.tracking()->config();
+  TrackingTask task = config.task;
+  // One substep, as for the thesis's arm. Without gravity and with weak controllers, the arm takes
+  // such long steps for some seconds.
+  task.physics.substeps = 1;
+  task.physics.gravity_m_per_s2 = 0;
+  const TrackingSetup setup(config.robot, task);
+  TestCase test_case = problem.tracking()->get_set("test/2").make_case(0);
+  test_case.points_m.resize(4);
+  compare_work(state, {setup, config.start, 0.001, test_case},
+               {thesis.tracking()->setup(), load_design("table-a1").design, 0.15,
+                thesis.tracking()->get_set("test/2").make_case(0)});
+  state.SetLabel(robot);
+}
+BENCHMARK(BM_MoreJointsAgainstThesisArm)
+    ->DenseRange(6, 7)
+    ->Iterations(60)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace armwright

@@ -191,6 +191,18 @@ TEST_F(Cli, GivesTheLimitsOfARobotsJointsTheirUnits) {
   }
 }
 
+TEST_F(Cli, GivesThePlantOfARobotsJointsInNumbersAndInWords) {
+  const std::string file = ARMWRIGHT_TEST_DATA "/urdf/cell.urdf";
+  const json joints = json::parse(run({"list", "robots", file, "--json"}).out).at("joints");
+  ASSERT_EQ(joints[1].at("name"), "turn");
+  const json& plant = joints[1].at("plant");
+  EXPECT_EQ(plant.at("viscous_n_m_s_per_rad"), 0.5);
+  EXPECT_EQ(plant.at("coulomb_n_m"), 0.25);
+  EXPECT_EQ(plant.at("armature_kg_m2"), 0);
+  EXPECT_THAT(run({"list", "robots", file}).out,
+              HasSubstr("turn: viscous friction 0.5 N m s/rad, Coulomb friction 0.25 N m"));
+}
+
 TEST_F(Cli, ExplainsAProblem) {
   const json problem = json::parse(run({"list", "problems", "q1-complex", "--json"}).out);
   ASSERT_EQ(problem.at("variables").size(), 20);

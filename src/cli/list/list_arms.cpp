@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -148,7 +149,17 @@ json explain_robot_as_json(const std::string& name) {
         {slides ? "speed_limit_m_per_s" : "speed_limit_rad_per_s", finite(joint.speed_limit)},
         {slides ? "effort_limit_n" : "effort_limit_n_m", finite(joint.effort_limit)}};
     if (!joint.plant.is_ideal()) {
-      described["plant"] = describe_plant(joint);
+      json plant = list_plant_numbers(joint);
+      if (joint.plant.is_elastic()) {
+        plant["measured"] = joint.plant.measured == MeasuredSide::motor ? "motor" : "link";
+      }
+      if (const auto& efforts = joint.plant.counterbalance.efforts; !efforts.empty()) {
+        const auto [least, most] = std::ranges::minmax(efforts);
+        const char* const unit = slides ? "n" : "n_m";
+        plant[fmt::format("counterbalance_least_{}", unit)] = least;
+        plant[fmt::format("counterbalance_most_{}", unit)] = most;
+      }
+      described["plant"] = std::move(plant);
     }
     joints.push_back(std::move(described));
   }

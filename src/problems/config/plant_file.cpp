@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <map>
 #include <numbers>
 #include <vector>
 
@@ -418,6 +419,24 @@ void load_plant(const std::filesystem::path& file, RobotModel& robot) {
 const SettingTable& plant_settings() {
   static const PlantSettings settings({"NAME"});
   return settings.file();
+}
+
+std::map<std::string, double> list_plant_numbers(const Joint& joint) {
+  const JointPlant& plant = joint.plant;
+  std::map<std::string, double> numbers;
+  const auto add = [&](double value, const JointNumber& setting) {
+    numbers[setting.get(joint.kind).key] = value;
+  };
+  add(plant.armature, kArmature);
+  add(plant.viscous, kViscous);
+  add(plant.coulomb, kCoulomb);
+  add(plant.stribeck, kStribeck);
+  add(plant.transition_rate, kTransitionRate);
+  add(plant.stribeck_rate, kStribeckRate);
+  add(plant.offset, kOffset);
+  add(plant.stiffness, kStiffness);
+  add(plant.damping, kDamping);
+  return numbers;
 }
 
 std::string describe_plant(const Joint& joint) {

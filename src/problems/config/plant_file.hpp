@@ -16,6 +16,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "base/setting.hpp"
@@ -46,6 +47,9 @@ void load_plant(const std::filesystem::path& file, RobotModel& robot);
 
 // Returns the declarations of the file's settings, for joints called NAME.
 const SettingTable& plant_settings();
+
+// Returns the numbers of a joint's plant by their keys in the file, but no counterbalance.
+std::map<std::string, double> list_plant_numbers(const Joint& joint);
 
 // Returns the plant of a joint as words with units: "armature 1.2 kg m^2, Coulomb friction 5 N m".
 // Empty for the ideal joint.

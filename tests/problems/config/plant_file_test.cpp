@@ -97,6 +97,12 @@ measured = "link"
                                    "[joint.rail]\narmature_kg = 2\nviscous_n_s_per_m = 3\n"
                                    "coulomb_n = 4\nstiffness_n_per_m = 5e5\n",
                                    0);
+  EXPECT_THAT(list_plant_numbers(sliding),
+              testing::IsSupersetOf({std::pair<const std::string, double>{"armature_kg", 2},
+                                     {"viscous_n_s_per_m", 3},
+                                     {"coulomb_n", 4},
+                                     {"stribeck_n", 0},
+                                     {"stiffness_n_per_m", 5e5}}));
   EXPECT_EQ(describe_plant(sliding),
             "armature 2 kg, viscous friction 3 N s/m, Coulomb friction 4 N, stiffness 500000 N/m");
 }
