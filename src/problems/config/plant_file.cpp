@@ -399,6 +399,23 @@ void read_plant(const std::filesystem::path& file, RobotModel& robot) {
   document.refuse_unknown();
 }
 
+struct PlantNumber {
+  double JointPlant::*member;
+  const JointNumber* setting;
+  const char* words;  // null: describe_plant() leaves it out
+};
+const PlantNumber kPlantNumbers[] = {
+    {&JointPlant::armature, &kArmature, "armature"},
+    {&JointPlant::viscous, &kViscous, "viscous friction"},
+    {&JointPlant::coulomb, &kCoulomb, "Coulomb friction"},
+    {&JointPlant::stribeck, &kStribeck, "Stribeck friction"},
+    {&JointPlant::transition_rate, &kTransitionRate, nullptr},
+    {&JointPlant::stribeck_rate, &kStribeckRate, nullptr},
+    {&JointPlant::offset, &kOffset, "offset"},
+    {&JointPlant::stiffness, &kStiffness, "stiffness"},
+    {&JointPlant::damping, &kDamping, "damping"},
+};
+
 }  // namespace
 
 std::filesystem::path name_plant_file(std::filesystem::path urdf) {
@@ -422,38 +439,23 @@ const SettingTable& plant_settings() {
 }
 
 std::map<std::string, double> list_plant_numbers(const Joint& joint) {
-  const JointPlant& plant = joint.plant;
   std::map<std::string, double> numbers;
-  const auto add = [&](double value, const JointNumber& setting) {
-    numbers[setting.get(joint.kind).key] = value;
-  };
-  add(plant.armature, kArmature);
-  add(plant.viscous, kViscous);
-  add(plant.coulomb, kCoulomb);
-  add(plant.stribeck, kStribeck);
-  add(plant.transition_rate, kTransitionRate);
-  add(plant.stribeck_rate, kStribeckRate);
-  add(plant.offset, kOffset);
-  add(plant.stiffness, kStiffness);
-  add(plant.damping, kDamping);
+  for (const PlantNumber& number : kPlantNumbers) {
+    numbers[number.setting->get(joint.kind).key] = joint.plant.*number.member;
+  }
   return numbers;
 }
 
 std::string describe_plant(const Joint& joint) {
   const JointPlant& plant = joint.plant;
   std::vector<std::string> parts;
-  const auto add = [&](const char* words, double value, const JointNumber& setting) {
-    if (value != 0) {
-      parts.push_back(fmt::format("{} {:.6g} {}", words, value, setting.get(joint.kind).unit));
+  for (const PlantNumber& number : kPlantNumbers) {
+    const double value = plant.*number.member;
+    if (value != 0 && number.words != nullptr) {
+      parts.push_back(
+          fmt::format("{} {:.6g} {}", number.words, value, number.setting->get(joint.kind).unit));
     }
-  };
-  add("armature", plant.armature, kArmature);
-  add("viscous friction", plant.viscous, kViscous);
-  add("Coulomb friction", plant.coulomb, kCoulomb);
-  add("Stribeck friction", plant.stribeck, kStribeck);
-  add("offset", plant.offset, kOffset);
-  add("stiffness", plant.stiffness, kStiffness);
-  add("damping", plant.damping, kDamping);
+  }
   if (plant.is_elastic() && plant.measured == MeasuredSide::link) {
     parts.push_back("measured at the link");
   }

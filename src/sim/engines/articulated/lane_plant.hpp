@@ -144,8 +144,8 @@ class LanePlant {
     return number(kArmature, i) + substep_s * chord;
   }
 
-  // What few plants need is not inlined. The functions do not see this object, which would lie in
-  // memory if they did.
+  // The compiler inlines none of these functions, because few plants need them. They are static: if
+  // they had a pointer to this object, the compiler would keep it in memory.
   __attribute__((noinline)) static void show_measured(SegmentCall<T>& call, V* held) {
     V* const q = &get_state(call, kQ, 0);
     for (int i = 0; i < call.joints; ++i) {

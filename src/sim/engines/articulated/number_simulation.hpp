@@ -274,8 +274,7 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     // There are fewer kernels than for simulations because each takes long to compile.
     if (call.plant != nullptr) {
       SegmentKernel<V, AnyChain, PlantKind::full>::run(call);
-    } else if (n == 4 && !call.prismatic && !call.tilted_gravity &&
-               has_shape(call.flags, 4, kPalletiser)) {
+    } else if (is_palletiser(call)) {
       SegmentKernel<V, Palletiser>::run(call);
     } else {
       SegmentKernel<V, AnyChain>::run(call);
