@@ -112,10 +112,10 @@ extern const SettingTable kControlSettings;
 extern const SettingTable kWorkspaceSettings;
 extern const Setting<std::string> kTaskOrientation, kControlController;
 extern const Setting<bool> kTaskCountFirstPoint;
-extern const Setting<double> kTaskSpeed, kTaskDistanceLimit, kWorkspaceRadius,
-    kWorkspaceShortestMove;
-extern const Setting<std::vector<double>> kTaskHome, kTaskLoadCom, kTaskToolRpy, kWorkspaceCentre,
-    kWorkspaceNormal;
+extern const Setting<double> kControlPeriod, kTaskSpeed, kTaskDistanceLimit, kTaskFloor,
+    kWorkspaceRadius, kWorkspaceShortestMove;
+extern const Setting<std::vector<double>> kTaskHome, kTaskLoadCom, kTaskToolRpy, kTaskToolAxis,
+    kWorkspaceCentre, kWorkspaceNormal;
 
 // The most control periods of a test case: the joint position setpoints of four joints then take
 // 320 MB. A published case has 3925.
@@ -147,8 +147,10 @@ inline constexpr Range kAngleRange{.lower = -7, .upper = 7};
 // config.workspace with it, and settles it. Values in the file are kept. Throws Error{usage} if the
 // file gives only a part of values that belong together.
 void apply_proposal(const ConfigTable& table, TrackingConfig& config);
-// Returns the proposed controllers and effort limits, for variables.start = "proposed".
-ArmDesign propose_start(const TrackingConfig& config);
+// Returns the proposed controllers and effort limits, for variables.start = "proposed". Their
+// bandwidth is that of [variables], or else 10 rad/s, or another one if simulations of the
+// proposal's cases diverge or have large errors; this bandwidth is settled.
+ArmDesign propose_start(const ConfigTable& variables, const TrackingConfig& config);
 
 // path_reader.cpp: [path], a path of the user's own in place of cases generated in the workspace
 //
@@ -200,6 +202,7 @@ void check_limits(const ConfigTable& table, const TrackingConfig& config);
 
 extern const SettingTable kVariableSettings;
 extern const Setting<std::string> kVariablesStart;
+extern const Setting<double> kVariablesStartBandwidth;
 // Reads the start, the decision vector and its bounds into `config`, and the controller that
 // [control] names. Throws Error{bad_data} if no start can be proposed for the robot in `urdf`.
 void read_variables(const ConfigTable& variables, const ConfigTable& control,

@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "base/toml_text.hpp"
 #include "problems/config/problem_readers.hpp"
+#include "sim/proposal/drive_proposal.hpp"
 
 namespace armwright {
 namespace {
@@ -48,6 +49,15 @@ void rename_old_keys(nlohmann::json& resolved) {
 void add_old_values(nlohmann::json& resolved) {
   if (resolved.contains("robot") && !resolved["task"].contains("solver")) {
     resolved["task"]["solver"] = "scalar";
+  }
+  if (resolved.contains("robot") && resolved["robot"].value("propose", false) &&
+      !resolved["control"].contains("period_s")) {
+    resolved["control"]["period_s"] = *kControlPeriod.fallback;
+  }
+  if (resolved.contains("variables") &&
+      resolved["variables"].value("start", "") == kProposedStart &&
+      !resolved["variables"].contains("start_bandwidth_rad_per_s")) {
+    resolved["variables"]["start_bandwidth_rad_per_s"] = kStartOfVersion1;
   }
 }
 

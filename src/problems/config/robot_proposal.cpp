@@ -3,14 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
 
 #include "base/error.hpp"
+#include "base/read_limit.hpp"
+#include "base/text.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "sim/proposal/drive_proposal.hpp"
 #include "sim/proposal/workspace_proposal.hpp"
 
 namespace armwright {
 namespace {
+
+// A start is simulated with these multiples of its bandwidth until its largest error is below this
+// share of the error that counts as a failure. Slower controllers help an arm that swings, faster
+// ones an arm that its weight pulls down.
+constexpr double kGoodStart = 0.5;
+constexpr double kStartTrials[] = {1, 0.7, 1.4, 0.5, 2, 0.35, 2.8, 0.25};
+constexpr std::size_t kStartCases = 4;
 
 std::vector<double> to_list(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
@@ -35,14 +48,14 @@ bool has_turns(const TrackingConfig& config) {
   return config.path && !config.path->turns.empty();
 }
 
-// `has_place`: the user gives a workspace or a path.
-void propose_tool(const ConfigTable& task, bool has_place, TrackingConfig& config) {
+// Chooses the orientation at a place that the user gives, unless the file does.
+void propose_tool(const ConfigTable& task, TrackingConfig& config) {
   if (task.has(kTaskOrientation)) {
     return;
   }
   ToolTask& tool = config.task.tool;
   // A user who gives the place also gives the tool's orientation there, if it counts.
-  if (!has_place || has_turns(config) || task.has(kTaskToolRpy)) {
+  if (has_turns(config) || task.has(kTaskToolRpy)) {
     tool.orientation = propose_orientation(config.robot, tool);
   }
   task.settle(kTaskOrientation,
@@ -62,6 +75,46 @@ void check_place(const ConfigTable& task, const ConfigTable& workspace,
   }
 }
 
+// Returns a workspace above the floor. An arm that does not stand on a floor gets one without, and a
+// note says so. Throws Error{bad_data} if there is no place to work.
+WorkspaceProposal find_place(const ConfigTable& task_table, TrackingConfig& config) {
+  TrackingTask& task = config.task;
+  const bool may_fall = !task.floor_m;
+  if (may_fall && config.robot.joints.front().origin.translation().z() >= 0) {
+    task.floor_m = 0;
+  }
+  std::optional<ToolOrientation> wanted;
+  if (task_table.has(kTaskOrientation)) {
+    wanted = task.tool.orientation;
+  }
+  auto found = propose_workspace(config.robot, task, config.workspace, wanted);
+  if (!found && may_fall && task.floor_m) {
+    task.floor_m.reset();
+    found = propose_workspace(config.robot, task, config.workspace, wanted);
+    if (found) {
+      config.robot.notes.emplace_back(
+          "no workspace was found above a floor at height 0, so the proposed one may lie below it; "
+          "give task.floor_m if there is a floor");
+    }
+  }
+  if (!found) {
+    refuse_proposal(
+        config.robot,
+        fmt::format("no place was found {}where its tool can move along straight lines with "
+                    "task.orientation = \"{}\", within all joint ranges and off singularities; set "
+                    "another task.orientation, or workspace.centre_m, workspace.radius_m and "
+                    "task.home yourself",
+                    task.floor_m ? fmt::format("above task.floor_m = {:g} ", *task.floor_m) : "",
+                    wanted ? tool_orientation_names()[static_cast<std::size_t>(*wanted)] : "free"));
+  }
+  if (!found->points_down && found->orientation != ToolOrientation::free) {
+    config.robot.notes.emplace_back(
+        "no workspace was found where the tool points down; the proposed one has it tilted "
+        "(task.tool_rpy_rad)");
+  }
+  return *found;
+}
+
 void propose_place(const ConfigTable& task_table, const ConfigTable& workspace,
                    TrackingConfig& config) {
   const AnySetting* const of_place[] = {&kWorkspaceRadius, &kWorkspaceShortestMove,
@@ -79,9 +132,13 @@ void propose_place(const ConfigTable& task_table, const ConfigTable& workspace,
     }
   }
   TrackingTask& task = config.task;
-  const WorkspaceProposal proposal = propose_workspace(config.robot, task, config.workspace);
+  if (!task_table.has(kTaskToolAxis)) {
+    task.tool.axis = propose_tool_axis(config.robot);
+  }
+  const WorkspaceProposal proposal = find_place(task_table, config);
   config.workspace = proposal.sphere;
   task.home = proposal.home;
+  task.tool.orientation = proposal.orientation;
   workspace.settle(kWorkspaceCentre, to_list(proposal.sphere.centre_m));
   workspace.settle(kWorkspaceRadius, proposal.sphere.radius_m);
   workspace.settle(kWorkspaceShortestMove, proposal.sphere.shortest_move_m);
@@ -89,14 +146,26 @@ void propose_place(const ConfigTable& task_table, const ConfigTable& workspace,
     workspace.settle(kWorkspaceNormal, to_list(*proposal.sphere.normal));
   }
   task_table.settle(kTaskHome, proposal.home);
+  task_table.settle(kTaskOrientation,
+                    tool_orientation_names()[static_cast<std::size_t>(proposal.orientation)]);
+  if (task.floor_m) {
+    task_table.settle(kTaskFloor, *task.floor_m);
+  }
   if (task.tool.orientation != ToolOrientation::free) {
     const Eigen::Vector3d rpy = calc_rpy(proposal.centre.turn);
     task.tool.turn = make_turn(rpy);  // the orientation that the recorded numbers give
     task_table.settle(kTaskToolRpy, to_list(rpy));
   }
+  if (task.tool.orientation == ToolOrientation::pointing) {
+    task_table.settle(kTaskToolAxis, to_list(task.tool.axis));
+  }
 }
 
-void propose_pace(const ConfigTable& task_table, TrackingConfig& config) {
+// Proposes the distance limit, the control period with its steps, and the speed.
+void propose_pace(const ConfigTable& table, TrackingConfig& config) {
+  const ConfigTable task_table = table.get_table_or_empty(kTaskSettings);
+  const ConfigTable control = table.get_table_or_empty(kControlSettings);
+  const ConfigTable physics = table.get_table_or_empty(kPhysicsSettings);
   TrackingTask& task = config.task;
   const std::vector<TestCase> cases = get_cases(config);
   if (!task_table.has(kTaskDistanceLimit)) {
@@ -104,10 +173,39 @@ void propose_pace(const ConfigTable& task_table, TrackingConfig& config) {
         config.path ? calc_longest_move_m(cases) : 2 * config.workspace.radius_m;
     task_table.settle(kTaskDistanceLimit, task.distance_limit_m);
   }
+  if (!control.has(kControlPeriod) && !(config.path && config.path->continuous)) {
+    task.control_period_s = propose_period_s(config.robot, task, cases);
+    control.settle(kControlPeriod, task.control_period_s);
+    if (!physics.has(kPhysicsSubsteps)) {
+      task.physics.substeps =
+          static_cast<int>(std::lround(task.control_period_s / kProposedStep_s));
+      physics.settle(kPhysicsSubsteps, task.physics.substeps);
+    }
+  }
   if (!task_table.has(kTaskSpeed) && !(config.path && config.path->continuous)) {
     task.speed_m_per_s = propose_speed(config.robot, task, cases);
     task_table.settle(kTaskSpeed, task.speed_m_per_s);
   }
+}
+
+// The largest error (m) of the design on the cases. Infinite if a simulation does not end well.
+double simulate_start(const PhysicsEngine& engine, const TrackingSetup& setup,
+                      const std::vector<TargetTable>& tables, const ArmDesign& design) {
+  std::vector<TrackingJob> jobs;
+  for (const TargetTable& table : tables) {
+    if (table.unreachable.empty()) {
+      TrackingJob& job = jobs.emplace_back();
+      job.design = &design;
+      job.targets = &table;
+    }
+  }
+  double most_m = 0;
+  for (const TrackingResult& result : engine.simulate(setup, jobs)) {
+    check_reading();
+    most_m = result.status == SimulationStatus::ok ? std::max(most_m, result.mean_error_m)
+                                                   : std::numeric_limits<double>::infinity();
+  }
+  return most_m;
 }
 
 }  // namespace
@@ -116,15 +214,14 @@ void apply_proposal(const ConfigTable& table, TrackingConfig& config) {
   const ConfigTable task = table.get_table_or_empty(kTaskSettings);
   const ConfigTable workspace = table.get_table_or_empty(kWorkspaceSettings);
   const ConfigTable path = table.get_table_or_empty(kPathSettings);
-  const bool has_place = workspace.has(kWorkspaceCentre) || config.path;
-  propose_tool(task, has_place, config);
-  if (has_place) {
+  if (workspace.has(kWorkspaceCentre) || config.path) {
+    propose_tool(task, config);
     check_place(task, workspace, config);
   } else {
     propose_place(task, workspace, config);
   }
   try {
-    propose_pace(task, config);
+    propose_pace(table, config);
   } catch (const Error& error) {
     if (!config.path) {
       throw;
@@ -135,8 +232,43 @@ void apply_proposal(const ConfigTable& table, TrackingConfig& config) {
   }
 }
 
-ArmDesign propose_start(const TrackingConfig& config) {
-  return propose_design(config.robot, config.task, get_cases(config), config.own_effort_limits);
+ArmDesign propose_start(const ConfigTable& variables, const TrackingConfig& config) {
+  const std::vector<TestCase> cases = get_cases(config);
+  const auto propose = [&](double bandwidth_rad_per_s) {
+    return propose_design(config.robot, config.task, cases, config.own_effort_limits,
+                          bandwidth_rad_per_s);
+  };
+  const auto record = [&](double bandwidth_rad_per_s) {
+    if (bandwidth_rad_per_s == kStartOfVersion1) {
+      variables.leave_out(kVariablesStartBandwidth);  // so recorded version 1.0
+    } else {
+      variables.settle(kVariablesStartBandwidth, bandwidth_rad_per_s);
+    }
+    return propose(bandwidth_rad_per_s);
+  };
+  if (const auto bandwidth = variables.find(kVariablesStartBandwidth)) {
+    return record(*bandwidth);
+  }
+  const ReadStep step(
+      fmt::format("simulating the start of robot '{}'", sanitize(config.robot.name)));
+  const TrackingSetup setup(config.robot, config.task);
+  const std::vector<TargetTable> tables =
+      setup.make_targets(std::span(cases).first(std::min(kStartCases, cases.size())));
+  double best_rad_per_s = kStartBandwidth_rad_per_s;
+  double least_error_m = std::numeric_limits<double>::infinity();
+  for (const double share : kStartTrials) {
+    const double tried_rad_per_s = share * kStartBandwidth_rad_per_s;
+    const double error_m =
+        simulate_start(*config.engines.judging, setup, tables, propose(tried_rad_per_s));
+    if (error_m < least_error_m) {
+      least_error_m = error_m;
+      best_rad_per_s = tried_rad_per_s;
+    }
+    if (error_m < kGoodStart * kFailureError_m) {
+      break;
+    }
+  }
+  return record(best_rad_per_s);
 }
 
 }  // namespace armwright

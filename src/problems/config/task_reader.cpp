@@ -27,6 +27,13 @@ const Setting<double> kTaskDistanceLimit{
     {.lower = 0, .upper = 100},
     TrackingTask{}.distance_limit_m,
     "a move shorter than this takes as long as a move of this length"};
+const Setting<double> kTaskFloor{
+    "floor_m",
+    {.lower = -1000, .upper = 1000},
+    kNoDefault,
+    "height in the world below which no link may be; path checks and proposals keep to it "
+    "(default: "
+    "no floor; a proposed workspace has one at 0 if the arm can work above it)"};
 const Setting<std::vector<double>> kTaskHome{
     "home",
     {.lower = -1000, .upper = 1000},
@@ -42,6 +49,15 @@ const Setting<std::vector<double>> kTaskLoadCom{
 const Setting<std::vector<double>> kTaskToolRpy{
     "tool_rpy_rad", kAngleRange, kNoDefault,
     "orientation of the tool in the world: roll, pitch and yaw, three numbers"};
+
+const Setting<std::vector<double>> kTaskToolAxis{
+    "tool_axis", kDirectionRange, kNoDefault,
+    "direction in the tip's frame that points, three numbers (default: z)"};
+
+const Setting<double> kControlPeriod{"period_s",
+                                     {.lower = 1e-5, .upper = 0.1},
+                                     TrackingTask{}.control_period_s,
+                                     "sample period of the controllers"};
 
 const Setting<std::string> kControlController{
     "controller", controller_names, kNoDefault,
@@ -98,19 +114,11 @@ const Setting<std::string> kTaskLimits{
     "limits", limit_policy_names, "ignore",
     "what happens if a path exceeds joint ranges or speeds, or meets singularities: nothing, a "
     "warning or an error"};
-const Setting<std::vector<double>> kTaskToolAxis{
-    "tool_axis", kDirectionRange, kNoDefault,
-    "direction in the tip's frame that points, three numbers (default: z)"};
 const Setting<double> kTaskOrientationArm{
     "orientation_arm_m",
     {.lower = 1e-3, .upper = 100},
     ToolTask{}.arm_m,
     "position error that an orientation error of 1 rad counts as"};
-
-const Setting<double> kControlPeriod{"period_s",
-                                     {.lower = 1e-5, .upper = 0.1},
-                                     TrackingTask{}.control_period_s,
-                                     "sample period of the controllers"};
 
 const Setting<int> kWorkspacePoints{"points",
                                     {.lower = 3, .upper = 1000},
@@ -174,8 +182,9 @@ const SettingTable kTaskSettings{
     .key = "task",
     .settings = {&kTaskSignal, &kTaskSpeed, &kTaskDistanceLimit, &kTaskTrapezoidAcceleration,
                  &kTaskRest, &kTaskCountFirstPoint, &kTaskIkBug, &kTaskLoad, &kTaskLoadCom,
-                 &kTaskLoadInertia, &kTaskKinematics, &kTaskSolver, &kTaskLimits, &kTaskOrientation,
-                 &kTaskToolRpy, &kTaskToolAxis, &kTaskOrientationArm, &kTaskHome}};
+                 &kTaskLoadInertia, &kTaskKinematics, &kTaskSolver, &kTaskLimits, &kTaskFloor,
+                 &kTaskOrientation, &kTaskToolRpy, &kTaskToolAxis, &kTaskOrientationArm,
+                 &kTaskHome}};
 const SettingTable kControlSettings{.key = "control",
                                     .settings = {&kControlPeriod, &kControlController}};
 const SettingTable kWorkspaceSettings{
@@ -215,6 +224,7 @@ TrackingTask read_task(const ConfigTable& table, const ConfigTable& control) {
   task.kinematics = static_cast<KinematicsChoice>(table.get_choice(kTaskKinematics));
   task.solver = static_cast<NumericSolver>(table.get_choice(kTaskSolver));
   task.limits = static_cast<LimitPolicy>(table.get_choice(kTaskLimits));
+  task.floor_m = table.find(kTaskFloor);
   task.tool = read_tool(table);
   if (const auto home = table.find(kTaskHome)) {
     task.home = *home;

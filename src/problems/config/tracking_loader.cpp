@@ -122,6 +122,17 @@ std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
   }
 }
 
+// Refuses a floor above the arm's base.
+void check_floor(const ConfigTable& task, const TrackingConfig& config) {
+  const double base_m = config.robot.joints.front().origin.translation().z();
+  if (config.task.floor_m && *config.task.floor_m > base_m) {
+    task.refuse(kTaskFloor,
+                fmt::format("the arm's first joint is lower, at {:.6g} m; the floor must not be "
+                            "above it (heights are z in the frame of the root link)",
+                            base_m));
+  }
+}
+
 // Refuses, in [physics], steps that cannot simulate the swinging of an elastic joint. `plant` is the
 // robot's plant file, or empty.
 void check_elasticity(const ConfigTable& physics, const TrackingConfig& config,
@@ -266,6 +277,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
     task.refuse(kTaskHome, fmt::format("it must hold {} numbers, one a joint of the robot",
                                        config.robot.joint_count()));
   }
+  check_floor(task, config);
   config.workspace = read_workspace(table.get_table_or_empty(kWorkspaceSettings));
   name_robot_file(urdf, [&] { read_path_and_proposal(table, config, loaded); });
   check_length(task, control, config);

@@ -19,6 +19,13 @@ const Setting<std::string> kVariablesStart{
     "start", kNoDefault,
     "design to start from: a file beside this one, the name of a shipped design, or proposed"};
 
+const Setting<double> kVariablesStartBandwidth{
+    "start_bandwidth_rad_per_s",
+    {.lower = 0, .upper = 1000},
+    kNoDefault,
+    "bandwidth of the controllers of a proposed start (default: 10, or another one where "
+    "simulations of the start diverge or fail); 0: as version 1.0, whose records lack this key"};
+
 namespace {
 
 constexpr Range kFactor{.lower = 1, .upper = 100, .lower_open = true};
@@ -173,16 +180,16 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
 
 const SettingTable kVariableSettings{
     .key = "variables",
-    .settings = {&kVariablesStart, &kVariablesOptimize, &kVariablesTask, &kVariablesBounds,
-                 &kVariablesLengthBounds, &kVariablesSectionBounds, &kVariablesSpeedBounds,
-                 &kVariablesWithinEffort},
+    .settings = {&kVariablesStart, &kVariablesStartBandwidth, &kVariablesOptimize, &kVariablesTask,
+                 &kVariablesBounds, &kVariablesLengthBounds, &kVariablesSectionBounds,
+                 &kVariablesSpeedBounds, &kVariablesWithinEffort},
     .tables = {&kJointVariableSettings}};
 
 void read_variables(const ConfigTable& variables, const ConfigTable& control,
                     const std::filesystem::path& urdf, TrackingConfig& config,
                     LoadedProblem& loaded) {
   if (variables.get(kVariablesStart) == kProposedStart) {
-    name_robot_file(urdf, [&] { config.start = propose_start(config); });
+    name_robot_file(urdf, [&] { config.start = propose_start(variables, config); });
   } else {
     const auto start = resolve_named(variables, kVariablesStart, "designs");
     config.start = load_design(start.string()).design;

@@ -24,12 +24,16 @@ using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
 
 // Allowed error as a fraction of the arm's length; far below the accuracy of any controller.
 constexpr double kTolerance = 1e-10;
+// The same for a tool that four joints keep vertical: in files, angles such as 1.5708 rad for a
+// quarter of a turn leave it a little tilted.
+constexpr double kTiltedTolerance = 3e-5;
 constexpr double kDamping = 1e-9;  // the least mu^2, as a fraction of the largest (J^T J)_ii
 // Following a path starts near the solution and needs few iterations; a search needs more.
 constexpr int kFollowIterations = 30;
 constexpr double kFollowStep = 0.5;  // rad or m
 constexpr int kSearchIterations = 200;
 constexpr double kSearchStep = 0.3;
+constexpr double kVertical = 1 - 1e-9;  // |z| of a direction that counts as vertical
 constexpr int kRelaxations = 300;
 constexpr double kRelaxationShare = 0.2;
 constexpr double kRelaxed = 1e-7;
@@ -131,6 +135,8 @@ NumericKinematics::NumericKinematics(const RobotModel& robot, const ToolTask& to
   }
   length_m_ = std::max(length_m_, kShortest_m);
   find_rank();
+  const bool may_tilt = tool_.orientation == ToolOrientation::pointing && rank_ == 4;
+  tolerance_m_ = (may_tilt ? kTiltedTolerance : kTolerance) * length_m_;
   make_lane_chain(robot);
 }
 
@@ -142,7 +148,7 @@ void NumericKinematics::make_lane_chain(const RobotModel& robot) {
   chain.within_limits = within_limits_;
   chain.orientation = tool_.orientation;
   chain.arm_m = tool_.arm_m;
-  chain.tolerance_m = kTolerance * length_m_;
+  chain.tolerance_m = tolerance_m_;
   chain.least_damping = kDamping;
   Vector3d::Map(chain.tool_axis) = tool_.axis;
   Matrix3d basis = Matrix3d::Identity();  // B of the joint before
@@ -208,8 +214,10 @@ bool NumericKinematics::suits_task() const {
   switch (tool_.orientation) {
     case ToolOrientation::free:
       return rank_ >= 1;
-    case ToolOrientation::pointing:
-      return rank_ >= 5;
+    case ToolOrientation::pointing: {
+      const double upright = std::abs((tool_.turn * tool_.axis).z());
+      return rank_ >= (upright > kVertical ? 4 : 5);
+    }
     case ToolOrientation::pose:
       return rank_ >= 6;
   }
@@ -326,6 +334,17 @@ ToolPose NumericKinematics::calc_pose(std::span<const double> q) const {
   return {posture.tip, posture.turn};
 }
 
+std::vector<Eigen::Vector3d> NumericKinematics::calc_places(std::span<const double> q) const {
+  Posture posture;
+  calc_posture(to_vector(q), posture);
+  std::vector<Eigen::Vector3d> places;
+  for (std::size_t i = 0; i < chain_.size(); ++i) {
+    places.emplace_back(posture.place[i] + (chain_[i].slides ? q[i] : 0.0) * posture.axis[i]);
+  }
+  places.push_back(posture.tip);
+  return places;
+}
+
 double NumericKinematics::calc_distance(const ToolPose& target, std::span<const double> q) const {
   Posture posture;
   calc_posture(to_vector(q), posture);
@@ -417,7 +436,7 @@ bool NumericKinematics::solve(Approach& search) const {
   for (int i = 0;; ++i) {
     calc_posture(search.q, posture);
     const Error6 error = calc_error(search.target, posture);
-    if (i > 0 && error.norm() <= kTolerance * length_m_) {
+    if (i > 0 && error.norm() <= tolerance_m_) {
       return true;
     }
     if (i == search.iterations ||
@@ -479,6 +498,17 @@ NumericKinematics::Approach NumericKinematics::make_following() const {
   return search;
 }
 
+NumericKinematics::Approach NumericKinematics::make_search(const ToolPose& target,
+                                                           std::span<const double> q) const {
+  Approach search;
+  search.target = target;
+  search.q = to_vector(q);
+  search.wish = Vector::Zero(search.q.size());
+  search.iterations = kSearchIterations;
+  search.longest_step = kSearchStep;
+  return search;
+}
+
 bool NumericKinematics::follow(const ToolPose& target, std::span<const double> wish,
                                std::span<double> q) const {
   Approach search = make_following();
@@ -498,10 +528,8 @@ NumericKinematics::Finding::Finding(const NumericKinematics& kinematics, const T
 }
 
 void NumericKinematics::Finding::begin_attempt() {
-  search_.q = to_vector(attempts_ == 0 ? kinematics_.home_ : kinematics_.draw_posture(random_));
-  search_.wish = Vector::Zero(search_.q.size());
-  search_.iterations = kSearchIterations;
-  search_.longest_step = kSearchStep;
+  search_ = kinematics_.make_search(
+      search_.target, attempts_ == 0 ? kinematics_.home_ : kinematics_.draw_posture(random_));
 }
 
 void NumericKinematics::Finding::begin_relaxation() {

@@ -69,6 +69,8 @@ class NumericKinematics {
   void approach(std::span<Approach* const> some) const;
   // Makes the search of follow().
   Approach make_following() const;
+  // Makes a search that may begin far from its target, at q.
+  Approach make_search(const ToolPose& target, std::span<const double> q) const;
 
   // The sequence of searches by which find() finds a posture. The caller executes them, so that
   // several sequences can share the lanes.
@@ -105,6 +107,9 @@ class NumericKinematics {
   bool find(const ToolPose& target, std::span<double> q) const;
 
   ToolPose calc_pose(std::span<const double> q) const;
+  // Returns where the joints' origins and, at the end, the tip are in the world (m). The origin of
+  // a prismatic joint moves with its link.
+  std::vector<Eigen::Vector3d> calc_places(std::span<const double> q) const;
   // Returns the distance of a posture from a target in the task's measure (m, tool_task.hpp).
   double calc_distance(const ToolPose& target, std::span<const double> q) const;
   // Returns J: one row per component of the task's error, one column per joint.
@@ -112,7 +117,8 @@ class NumericKinematics {
   // Returns the rank of J at a posture without singularity.
   int rank() const { return rank_; }
   // suits_task() returns whether that rank is sufficient for the task; check_task() throws
-  // Error{bad_data} if it is not.
+  // Error{bad_data} if it is not. A tool that points up or down, as ToolTask::turn says, needs only
+  // four: most arms turn about the vertical and bend in one plane, in which they can do it.
   bool suits_task() const;
   void check_task(const RobotModel& robot) const;
   // Returns the ratio of J's smallest singular value (among the first rank()) to its largest.
@@ -164,6 +170,7 @@ class NumericKinematics {
   postures::Solve solve_lanes_;
   double length_m_ = 0;
   int rank_ = 0;
+  double tolerance_m_ = 0;  // the largest error of a solution
 };
 
 }  // namespace armwright

@@ -6,29 +6,28 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <utility>
 
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
-#include "sim/engines/articulated/articulated_arm.hpp"
+#include "sim/proposal/holding_effort.hpp"
 #include "sim/proposal/workspace_proposal.hpp"
 #include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 namespace {
 
+// The share of a joint's speed limit, and of the effort that gravity and friction leave, that the
+// longest move may take.
 constexpr double kSpeedShare = 0.6;
 constexpr double kEffortShare = 0.6;
-constexpr double kSlower = 0.8;
-constexpr int kSlowdowns = 20;
-// Below 1 / kSlowdownOfSteps of the first speed, efforts are computed for longer control periods
-// instead of more: 400 for the longest move, since it takes 1 s at first, and a period 10 ms. The
-// efforts are nearly those at rest then. The proposed speed depends on the joints' speeds to the
-// last bit, so they keep the task's periods down to 1 / kSlowdownOfSpeeds.
+// A joint that holds its arm with more than this share of its effort limit cannot be controlled.
+constexpr double kMostHoldingShare = 0.95;
+constexpr int kMostRounds = 12;
+constexpr double kRoundTolerance = 1.01;
+// Slower than the first speed by this factor, tables have longer control periods instead of more:
+// 400 for the longest move, since it takes 1 s at first, and a period 10 ms.
 constexpr double kSlowdownOfSteps = 4;
-constexpr double kSlowdownOfSpeeds = 30;
 
-constexpr double kBandwidth_rad_per_s = 10;
 constexpr double kDampingRatio = 0.7;
 // The largest h D (M^-1)_ii; sampled damping diverges at 2.
 constexpr double kMostSampledDamping = 0.7;
@@ -38,10 +37,10 @@ constexpr double kMostReserve = 10;
 constexpr double kLeastAcceleration = 5;  // rad/s^2 or m/s^2
 constexpr int kStepsBetween = 20;         // steps between two evaluations of the mass matrix
 
-// The largest efforts of inverse dynamics on the path and the largest M_ii, one per joint.
+// What the path asks of the joints, one number per joint.
 struct Demand {
-  std::vector<double> efforts;
-  std::vector<double> inertia;
+  std::vector<double> efforts;   // the largest of inverse dynamics
+  std::vector<double> inertia;   // the largest M_ii
   std::vector<double> mobility;  // the largest (M^-1)_ii
 };
 
@@ -49,24 +48,18 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
   const std::size_t n = setup.robot().joint_count();
   const std::vector<double> nothing(n, 0);
   Demand demand{nothing, nothing, nothing};
-  RobotModel rigid = setup.robot();  // feed-forward efforts treat elastic joints as rigid, too
-  for (Joint& joint : rigid.joints) {
-    joint.plant.stiffness = 0;
-  }
-  ArticulatedArm arm(rigid, tables.front().start_positions, setup.task().physics);
-  const std::vector<double> rest(n, 0);
+  HoldingEffort holding(setup.robot(),
+                        setup.task().physics);  // its arm is rigid, as feed-forward's
   for (const TargetTable& table : tables) {
     for (int step = 0; step < table.steps; ++step) {
-      if (step % kStepsBetween == 0) {
-        check_reading();
-      }
       const auto efforts = table.feed_forward(step);
       for (std::size_t i = 0; i < n; ++i) {
         demand.efforts[i] = std::max(demand.efforts[i], std::abs(efforts[i]));
       }
       if (step % kStepsBetween == 0) {
-        arm.set_state(table.positions(step), rest);
-        const Eigen::MatrixXd mass = arm.calc_mass_matrix();
+        check_reading();
+        holding.arm().set_state(table.positions(step), nothing);
+        const Eigen::MatrixXd mass = holding.arm().calc_mass_matrix();
         const Eigen::MatrixXd inverse = mass.inverse();
         for (std::size_t i = 0; i < n; ++i) {
           const auto at = static_cast<Eigen::Index>(i);
@@ -90,17 +83,58 @@ std::vector<TargetTable> make_tables(const RobotModel& robot, const TrackingSetu
   return tables;
 }
 
-// Returns the joint that uses the largest share of its limit, and that share.
-template <class GetShare>
-std::pair<std::size_t, double> find_busiest(std::size_t joints, const GetShare& get_share) {
-  std::pair<std::size_t, double> busiest{0, 0};
-  for (std::size_t i = 0; i < joints; ++i) {
-    const double share = get_share(i);
-    if (share > busiest.second) {
-      busiest = {i, share};
+// Returns the largest share of a joint's speed limit that the tables use.
+double find_speed_share(const TrackingSetup& setup, const std::vector<TargetTable>& tables) {
+  double most = 0;
+  for (const TargetTable& table : tables) {
+    std::span<const double> before = table.start_positions;
+    for (int step = 0; step < table.steps; ++step) {
+      for (std::size_t i = 0; i < table.joints; ++i) {
+        const Joint& joint = setup.robot().joints[i];
+        const double way = calc_displacement(joint.kind, before[i], table.positions(step)[i]);
+        most = std::max(most, std::abs(way) / setup.task().control_period_s / joint.speed_limit);
+      }
+      before = table.positions(step);
     }
   }
-  return busiest;
+  return most;
+}
+
+// Returns the largest share of the effort that is left for motion: what inverse dynamics asks for
+// beside gravity and dry friction, divided by what these two leave of the limit. Throws
+// Error{bad_data} if they leave too little.
+double find_motion_share(const RobotModel& robot, const TrackingSetup& setup,
+                         const std::vector<TargetTable>& tables) {
+  HoldingEffort holding(setup.robot(), setup.task().physics);
+  double most = 0;
+  HoldingEffort::Hardest hardest;
+  for (const TargetTable& table : tables) {
+    std::span<const double> before = table.start_positions;
+    for (int step = 0; step < table.steps; ++step) {
+      if (step % kStepsBetween == 0) {
+        check_reading();
+      }
+      if (step > 0 && std::ranges::equal(before, table.positions(step))) {
+        continue;  // the target rests
+      }
+      const std::span<const double> held = holding.calc(before);
+      for (std::size_t i = 0; i < table.joints; ++i) {
+        const Joint& joint = setup.robot().joints[i];
+        const double dry = joint.plant.coulomb + std::max(0.0, joint.plant.stribeck);
+        const double standing = std::abs(held[i]) + dry;
+        if (standing > hardest.share * joint.effort_limit) {
+          hardest = {i, standing / joint.effort_limit, standing};
+        }
+        const double moving = std::abs(table.feed_forward(step)[i] - held[i]) - dry;
+        most = std::max(most, moving / std::max(joint.effort_limit - standing, 1e-12));
+      }
+      before = table.positions(step);
+    }
+  }
+  if (hardest.share > kMostHoldingShare) {
+    refuse_to_hold(robot, hardest, "in its workspace");
+  }
+  return most;
 }
 
 }  // namespace
@@ -116,78 +150,83 @@ double propose_speed(const RobotModel& robot, TrackingTask task,
   const double first_speed = task.distance_limit_m / kProposedMove_s;
   const double first_period_s = task.control_period_s;
   task.speed_m_per_s = first_speed;
-  bool has_speed = false;  // whether the joints' speed limits allow the speed
-  const std::size_t n = robot.joint_count();
   for (int round = 0;; ++round) {
-    const double slowdown = first_speed / task.speed_m_per_s;
     task.control_period_s =
-        first_period_s *
-        std::max(1.0, slowdown / (has_speed ? kSlowdownOfSteps : kSlowdownOfSpeeds));
+        first_period_s * std::max(1.0, first_speed / task.speed_m_per_s / kSlowdownOfSteps);
     const TrackingSetup setup(robot, task);
     const std::vector<TargetTable> tables = make_tables(robot, setup, cases);
-    std::vector<double> speeds(n, 0);
-    for (const TargetTable& table : tables) {
-      std::span<const double> before = table.start_positions;
-      for (int at = 0; at < table.steps; ++at) {
-        for (std::size_t i = 0; i < n; ++i) {
-          const double way =
-              calc_displacement(robot.joints[i].kind, before[i], table.positions(at)[i]);
-          speeds[i] = std::max(speeds[i], std::abs(way) / task.control_period_s);
-        }
-        before = table.positions(at);
-      }
-    }
-    const double fastest = find_busiest(n, [&](std::size_t i) {
-                             return speeds[i] / robot.joints[i].speed_limit;
-                           }).second;
-    if (fastest > kSpeedShare) {
-      task.speed_m_per_s *= std::max(kSpeedShare / fastest, 0.1) * 0.99;
-      if (round < kSlowdowns) {
-        continue;
-      }
-    }
-    const Demand demand = calc_demand(setup, tables);
-    const auto [joint, share] = find_busiest(
-        n, [&](std::size_t i) { return demand.efforts[i] / setup.robot().joints[i].effort_limit; });
-    if (share <= kEffortShare) {
+    // Joint speeds are proportional to the speed. Inertial and Coriolis efforts are to its square,
+    // viscous friction is to its first power, for which another round accounts.
+    const double slowdown =
+        std::max(find_speed_share(setup, tables) / kSpeedShare,
+                 std::sqrt(find_motion_share(robot, setup, tables) / kEffortShare));
+    if (slowdown <= kRoundTolerance || round == kMostRounds) {
       return task.speed_m_per_s;
     }
-    if (round >= kSlowdowns) {
-      if (share < 1) {
-        return task.speed_m_per_s;  // the joint can hold the arm with a small reserve
-      }
-      refuse_proposal(
-          robot,
-          fmt::format("joint {} ('{}') needs {:.4g} {} to hold the arm in its workspace, its "
-                      "effort limit is {:.4g}; correct the limit or the masses in the URDF, "
-                      "carry less, or set another workspace",
-                      joint + 1, sanitize(robot.joints[joint].name), demand.efforts[joint],
-                      robot.joints[joint].kind == JointKind::revolute ? "N m" : "N",
-                      robot.joints[joint].effort_limit));
-    }
-    task.speed_m_per_s *= kSlower;
-    has_speed = true;
+    task.speed_m_per_s /= slowdown;
   }
 }
 
+double calc_most_coupling(double control_period_s) {
+  return kMostSampledDamping / (control_period_s * 2 * kDampingRatio * kStartBandwidth_rad_per_s);
+}
+
+double calc_coupling(const Eigen::MatrixXd& mass) {
+  return mass.diagonal().cwiseProduct(mass.inverse().diagonal()).maxCoeff();
+}
+
+double propose_period_s(const RobotModel& robot, TrackingTask task,
+                        const std::vector<TestCase>& cases) {
+  const ReadStep step(
+      fmt::format("proposing a control period for robot '{}'", sanitize(robot.name)));
+  if (task.limits == LimitPolicy::enforce) {
+    task.limits = LimitPolicy::warn;
+  }
+  coarsen(task);
+  task.speed_m_per_s = task.distance_limit_m / kProposedMove_s;
+  const TrackingSetup setup(robot, task);
+  HoldingEffort holding(setup.robot(), task.physics);
+  const std::vector<double> rest(robot.joint_count(), 0);
+  double coupling = 1;
+  for (const TargetTable& table : make_tables(robot, setup, cases)) {
+    check_reading();
+    for (int at = 0; at < table.steps; at += kStepsBetween) {
+      holding.arm().set_state(table.positions(at), rest);
+      coupling = std::max(coupling, calc_coupling(holding.arm().calc_mass_matrix()));
+    }
+  }
+  for (const double period_s : {0.01, 0.005, 0.002}) {
+    if (coupling <= calc_most_coupling(period_s)) {
+      return period_s;
+    }
+  }
+  return kShortestPeriod_s;
+}
+
 ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
-                         const std::vector<TestCase>& cases, bool own_limits) {
+                         const std::vector<TestCase>& cases, bool own_limits,
+                         double bandwidth_rad_per_s) {
   const ReadStep step(fmt::format("proposing controllers for robot '{}'", sanitize(robot.name)));
   if (task.limits == LimitPolicy::enforce) {
     task.limits = LimitPolicy::warn;
   }
+  double period_s = task.control_period_s;
   if (!cases.front().continuous) {
     coarsen(task);
+  }
+  if (bandwidth_rad_per_s == kStartOfVersion1) {
+    period_s = task.control_period_s;  // its bound was that of the coarse period
+    bandwidth_rad_per_s = kStartBandwidth_rad_per_s;
   }
   task.feed_forward = FeedForward::inverse_dynamics;
   const TrackingSetup setup(robot, task);
   const Demand demand = calc_demand(setup, make_tables(robot, setup, cases));
   ArmDesign design;
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
-    const double w = kBandwidth_rad_per_s;
+    const double w = bandwidth_rad_per_s;
     const double m = demand.inertia[i];
-    const double d = std::min(2 * kDampingRatio * w * m,
-                              kMostSampledDamping / (task.control_period_s * demand.mobility[i]));
+    const double d =
+        std::min(2 * kDampingRatio * w * m, kMostSampledDamping / (period_s * demand.mobility[i]));
     const double p = std::min(w * w * m, d * d / m);
     JointDrive drive;
     drive.gains = {p, p * std::sqrt(p / m) / 4, d};

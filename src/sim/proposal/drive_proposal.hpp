@@ -2,10 +2,11 @@
 // workspace must be chosen before (workspace_proposal.hpp).
 //
 //   speed        the longest move takes 1 s, or longer if necessary: joints stay below 60 % of
-//                their speed limits, and the efforts of inverse dynamics below 60 % of their
-//                effort limits
+//                their speed limits. What inverse dynamics asks for beside gravity and dry friction
+//                stays below 60 % of what these two leave of the effort limits
+//   period       the longest of 10, 5, 2 and 1 ms at which the bound on D below reduces no gain
 //   gains        m is the joint's largest M_ii, the diagonal element of the mass matrix, on the
-//                cases; w = 10 rad/s, z = 0.7, and h is the control period:
+//                cases; w is the bandwidth, z = 0.7, and h is the control period:
 //                  D = 2 z w m,          at most 0.7 / (h max (M^-1)_ii). This bound is the
 //                                        smaller one if other joints move when this one is
 //                                        driven, for example nearly coaxial joints
@@ -18,6 +19,7 @@
 // Inverse dynamics and M_ii contain rotor inertia, friction and counterbalances.
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "sim/tracking/design.hpp"
@@ -27,14 +29,32 @@
 namespace armwright {
 
 // Returns a speed (m/s) for a task whose other members are set. Assumes that the arm rests at both
-// ends of every move. Throws Error{bad_data} if a joint cannot even hold the arm; the message names
-// the joint.
+// ends of every move. Throws Error{bad_data} if gravity and dry friction alone take more than 95 % of
+// a joint's effort limit; the message names the joint.
 double propose_speed(const RobotModel& robot, TrackingTask task,
                      const std::vector<TestCase>& cases);
 
+// The bandwidth w of a proposed start, unless that is not stable.
+inline constexpr double kStartBandwidth_rad_per_s = 10;
+// In place of a bandwidth: the rule of version 1.0, which has this bandwidth too, but a control
+// period of at least 10 ms in the bound on D.
+inline constexpr double kStartOfVersion1 = 0;
+// The time between two steps of the physics under a proposed control period.
+inline constexpr double kProposedStep_s = 0.001;
+inline constexpr double kShortestPeriod_s = 0.001;
+
+// Returns how strongly driving a joint moves the others: the largest M_ii (M^-1)_ii, 1 if it moves
+// none. calc_most_coupling() returns the largest value at which the bound on D reduces no gain.
+double calc_coupling(const Eigen::MatrixXd& mass);
+double calc_most_coupling(double control_period_s);
+// Returns a control period (s) for a task whose other members are set, except the speed.
+double propose_period_s(const RobotModel& robot, TrackingTask task,
+                        const std::vector<TestCase>& cases);
+
 // Returns a design with one PID controller per joint. `own_limits`: whether the robot's own effort
-// limits are proposed as they are.
+// limits are proposed as they are. `bandwidth_rad_per_s` may be kStartOfVersion1.
 ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
-                         const std::vector<TestCase>& cases, bool own_limits);
+                         const std::vector<TestCase>& cases, bool own_limits,
+                         double bandwidth_rad_per_s);
 
 }  // namespace armwright

@@ -5,49 +5,48 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 #include <span>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/random.hpp"
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
+#include "sim/kinematics/floor_clearance.hpp"
+#include "sim/proposal/drive_proposal.hpp"
 #include "sim/tracking/path_check.hpp"
 
 namespace armwright {
 namespace {
 
-constexpr int kPostures = 400;
+constexpr int kPostures = 2000;
 constexpr std::size_t kHomes = 24;  // postures around which a workspace is tried
 constexpr std::size_t kQuickCases = 3;
 constexpr int kCases = 8;
 constexpr int kMostPoints = 25;
 constexpr double kLook_s = 0.01;
+constexpr int kStepsBetweenWeights = 5;
 constexpr double kRest_s = 0.1;
 // Fractions of the arm's length.
 constexpr double kLargestRadius = 0.35;
 constexpr double kSmallestRadius = 0.01;
+constexpr double kWorthwhile = 0.04;  // a radius above which no other kind of workspace is tried
 constexpr double kRadiusStep = 0.8;
-constexpr double kKeepOff = 1.15;      // radii from the sphere's centre to the first joint
+constexpr double kKeepOff = 1.15;  // radii from the sphere's centre to the first joint
+// Distance of the sphere from the axis of a first joint that turns about the vertical: the base.
+constexpr double kBaseRadius = 0.08;
+constexpr double kFront = 0.7;  // cosine of the largest angle, about the vertical, from the front
+constexpr double kNoFront = 0.05;  // a mean place of the tip nearer to the first joint is no front
 constexpr double kStepOfRadius = 0.1;  // distance of the checked points on a move
 constexpr double kSafeDexterity = 3 * kSingularDexterity;
 constexpr double kKeepOffEnds = 0.02;  // fraction of half a joint's range
 // As in the thesis's cases, moves are at most a diameter and at least a sixteenth of the radius
 // long.
 constexpr double kShortestOfRadius = 1.0 / 16;
-
-double calc_length_m(const RobotModel& robot) {
-  double length_m = robot.tip_pose.translation().norm();
-  for (std::size_t i = 1; i < robot.joint_count(); ++i) {
-    length_m += robot.joints[i].origin.translation().norm();
-  }
-  for (const Joint& joint : robot.joints) {
-    if (joint.kind == JointKind::prismatic && std::isfinite(joint.upper - joint.lower)) {
-      length_m += joint.upper - joint.lower;
-    }
-  }
-  return length_m;
-}
+// Shares of the effort limits that hold the arm at home, and anywhere on the cases.
+constexpr double kMostHeldAtHome = 0.85;
+constexpr double kMostHeld = 0.9;
 
 // Returns the largest relative distance of a joint from the middle of its range: 0 in the middle, 1
 // at an end.
@@ -72,26 +71,87 @@ double calc_ease(const NumericKinematics& kinematics, const RobotModel& robot,
   return kinematics.calc_dexterity(q) * std::min(1.0, 3 * margin);
 }
 
-std::vector<std::vector<double>> choose_homes(const NumericKinematics& kinematics,
-                                              const RobotModel& robot) {
-  std::vector<std::pair<double, std::vector<double>>> postures;
-  postures.emplace_back(0, kinematics.home());
-  RandomStream random("proposal/home", 0);
-  for (int i = 0; i < kPostures; ++i) {
-    postures.emplace_back(0, kinematics.draw_posture(random));
+// Turns each posture so that the tool's axis points down, if it can; otherwise removes it.
+void level(const NumericKinematics& kinematics, const ToolTask& tool,
+           std::vector<std::vector<double>>& postures) {
+  std::vector<NumericKinematics::Approach> searches;
+  for (const std::vector<double>& q : postures) {
+    ToolPose pose = kinematics.calc_pose(q);
+    const Eigen::Vector3d axis = pose.turn * tool.axis;
+    pose.turn =
+        Eigen::Quaterniond::FromTwoVectors(axis, -Eigen::Vector3d::UnitZ()).toRotationMatrix() *
+        pose.turn;
+    searches.push_back(kinematics.make_search(pose, q));
   }
-  for (auto& [ease, q] : postures) {
-    ease = calc_ease(kinematics, robot, q);
+  constexpr std::size_t kAtOnce = 64;  // between two looks at the limit of reading
+  for (std::size_t i = 0; i < searches.size(); i += kAtOnce) {
+    check_reading();
+    std::vector<NumericKinematics::Approach*> some;
+    for (std::size_t k = i; k < std::min(i + kAtOnce, searches.size()); ++k) {
+      some.push_back(&searches[k]);
+    }
+    kinematics.approach(some);
   }
-  std::ranges::stable_sort(postures, std::greater<>{}, [](const auto& one) { return one.first; });
-  std::vector<std::vector<double>> homes;
-  for (std::size_t i = 0; i < std::min(kHomes, postures.size()); ++i) {
-    if (postures[i].first > 0) {
-      homes.push_back(postures[i].second);
+  postures.clear();
+  for (const NumericKinematics::Approach& search : searches) {
+    if (search.reached) {
+      postures.emplace_back(search.q.begin(), search.q.end());
     }
   }
-  return homes;
 }
+
+// Returns the horizontal direction in which the arm works: that of the mean place of the tip.
+Eigen::Vector2d find_front(const NumericKinematics& kinematics, const RobotModel& robot,
+                           const std::vector<std::vector<double>>& postures) {
+  const Eigen::Vector3d first_m = robot.joints.front().origin.translation();
+  Eigen::Vector3d sum_m = Eigen::Vector3d::Zero();
+  for (const std::vector<double>& q : postures) {
+    sum_m += kinematics.calc_pose(q).position_m - first_m;
+  }
+  const Eigen::Vector2d mean_m = sum_m.head<2>() / static_cast<double>(postures.size());
+  return mean_m.norm() > kNoFront * calc_arm_length_m(robot) ? mean_m.normalized()
+                                                             : Eigen::Vector2d::UnitX();
+}
+
+// The search for the largest workspace of a task whose tool.orientation is set.
+class Search {
+ public:
+  Search(const RobotModel& robot, const TrackingTask& task, const WorkspaceSphere& sphere)
+      : robot_(robot),
+        task_(task),
+        sphere_(sphere),
+        kinematics_(robot, task.tool, {}, true, task.solver),
+        holding_(task.load_kg > 0 ? add_load(robot, task.load_kg, task.load_body) : robot,
+                 task.physics),
+        length_m_(calc_arm_length_m(robot)),
+        first_m_(robot.joints.front().origin.translation()) {
+    if (task.floor_m) {
+      clearance_.emplace(robot, kinematics_, *task.floor_m);
+    }
+  }
+
+  // Returns the largest workspace that is found, the tool pointing down or in any direction.
+  std::optional<WorkspaceProposal> find(bool points_down);
+  // Throws if the arm cannot even be held in the easiest of its postures.
+  void check_holding();
+
+ private:
+  using Postures = std::vector<std::vector<double>>;
+
+  Postures draw_postures() const;
+  double calc_decoupling(std::span<const double> q);
+  double calc_most_radius_m(const Eigen::Vector3d& centre_m) const;
+  std::optional<WorkspaceProposal> try_homes(const Postures& homes, double least_m);
+
+  const RobotModel& robot_;
+  const TrackingTask& task_;
+  WorkspaceSphere sphere_;
+  NumericKinematics kinematics_;
+  HoldingEffort holding_;
+  std::optional<FloorClearance> clearance_;
+  double length_m_;
+  Eigen::Vector3d first_m_;
+};
 
 // Returns the normal of the plane in which the tip moves, or nothing if it moves in space.
 std::optional<Eigen::Vector3d> find_plane(const NumericKinematics& kinematics,
@@ -139,9 +199,22 @@ bool touches_an_end(const NumericKinematics& kinematics, const RobotModel& robot
   return calc_excursion(kinematics, robot, q) > 1 - kKeepOffEnds;
 }
 
+double calc_coupling_at(HoldingEffort& holding, std::span<const double> q) {
+  const std::vector<double> rest(q.size(), 0);
+  holding.arm().set_state(q, rest);
+  return calc_coupling(holding.arm().calc_mass_matrix());
+}
+
+// Returns whether driving a joint moves the others so much that no proposed control period is short
+// enough, as where two joints of a redundant arm have nearly the same axis.
+bool is_too_coupled(HoldingEffort& holding, std::span<const double> q) {
+  return calc_coupling_at(holding, q) > calc_most_coupling(kShortestPeriod_s);
+}
+
 // Returns whether the arm can follow straight moves through the points of the cases; checks
 // coarsely spaced points.
 bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot,
+                const FloorClearance* clearance, HoldingEffort& holding,
                 const WorkspaceSphere& sphere, const Eigen::Matrix3d& turn, std::vector<double> q) {
   const std::size_t n = q.size();
   if (!kinematics.find({sphere.centre_m, turn}, q)) {
@@ -163,7 +236,8 @@ bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot,
         const Eigen::Vector3d at_m =
             its.points_m[k - 1] + (static_cast<double>(step) / steps) * way_m;
         if (!kinematics.follow({at_m, turn}, wish, q) || touches_an_end(kinematics, robot, q) ||
-            kinematics.calc_dexterity(q) < kSafeDexterity) {
+            (clearance != nullptr && clearance->find_lowest(q).excess_m > 0) ||
+            is_too_coupled(holding, q) || kinematics.calc_dexterity(q) < kSafeDexterity) {
           return false;
         }
       }
@@ -173,7 +247,8 @@ bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot,
 }
 
 // Returns the same, checked with the target tables that simulations use.
-bool has_good_tables(const RobotModel& robot, TrackingTask task, const WorkspaceProposal& place) {
+bool has_good_tables(const RobotModel& robot, TrackingTask task, const WorkspaceProposal& place,
+                     HoldingEffort& holding) {
   coarsen(task);
   task.limits = LimitPolicy::warn;
   task.home = place.home;
@@ -188,7 +263,10 @@ bool has_good_tables(const RobotModel& robot, TrackingTask task, const Workspace
       return false;
     }
     for (int step = 0; step < table.steps; ++step) {
-      if (touches_an_end(*kinematics, robot, table.positions(step))) {
+      const std::span<const double> q = table.positions(step);
+      if (touches_an_end(*kinematics, robot, q) ||
+          (step % kStepsBetweenWeights == 0 &&
+           (holding.find_hardest(q).share > kMostHeld || is_too_coupled(holding, q)))) {
         return false;
       }
     }
@@ -206,10 +284,133 @@ void set_radius(WorkspaceSphere& sphere, double radius_m) {
   sphere.shortest_move_m = kShortestOfRadius * radius_m;
 }
 
+Search::Postures Search::draw_postures() const {
+  Postures postures = {kinematics_.home()};
+  RandomStream random("proposal/home", 0);
+  for (int i = 0; i < kPostures; ++i) {
+    postures.push_back(kinematics_.draw_posture(random));
+  }
+  return postures;
+}
+
+// Returns 1 if each joint can be damped as if the others stood still, and less the more the others
+// move when it is driven.
+double Search::calc_decoupling(std::span<const double> q) {
+  return std::min(1.0, calc_most_coupling(task_.control_period_s) / calc_coupling_at(holding_, q));
+}
+
+double Search::calc_most_radius_m(const Eigen::Vector3d& centre_m) const {
+  const Eigen::Vector3d way_m = centre_m - first_m_;
+  double most_m = std::min(kLargestRadius * length_m_, way_m.norm() / kKeepOff);
+  const Joint& first = robot_.joints.front();
+  const double upright = std::abs((first.origin.linear() * first.axis).z());
+  if (first.kind == JointKind::revolute && upright > 0.99) {
+    most_m = std::min(most_m, way_m.head<2>().norm() - kBaseRadius * length_m_);
+  }
+  return task_.floor_m ? std::min(most_m, centre_m.z() - *task_.floor_m) : most_m;
+}
+
+std::optional<WorkspaceProposal> Search::try_homes(const Postures& homes, double least_m) {
+  std::optional<WorkspaceProposal> best;
+  for (const std::vector<double>& home : homes) {
+    const ToolPose centre = kinematics_.calc_pose(home);
+    WorkspaceSphere sphere = sphere_;
+    sphere.centre_m = centre.position_m;
+    const NumericKinematics from_home(robot_, task_.tool, home, true, task_.solver);
+    for (double radius_m = calc_most_radius_m(sphere.centre_m); radius_m >= least_m;
+         radius_m *= kRadiusStep) {
+      check_reading();
+      set_radius(sphere, radius_m);
+      if (can_follow(from_home, robot_, clearance_ ? &*clearance_ : nullptr, holding_, sphere,
+                     centre.turn, home)) {
+        best = WorkspaceProposal{home, centre, sphere, task_.tool.orientation, false};
+        least_m = radius_m / kRadiusStep;
+        break;
+      }
+    }
+  }
+  return best;
+}
+
+std::optional<WorkspaceProposal> Search::find(bool points_down) {
+  sphere_.normal = find_plane(kinematics_, robot_, task_.tool, length_m_);
+  Postures postures = draw_postures();
+  const Eigen::Vector2d front = find_front(kinematics_, robot_, postures);
+  if (points_down) {
+    level(kinematics_, task_.tool, postures);
+  }
+  // The postures in front of the arm and the others, each with its ease.
+  std::vector<std::pair<double, std::vector<double>>> groups[2];
+  for (std::vector<double>& q : postures) {
+    const double ease = calc_ease(kinematics_, robot_, q) * calc_decoupling(q);
+    if (ease <= 0 || (clearance_ && clearance_->find_lowest(q).excess_m > 0) ||
+        holding_.find_hardest(q).share > kMostHeldAtHome) {
+      continue;
+    }
+    const Eigen::Vector2d way_m = (kinematics_.calc_pose(q).position_m - first_m_).head<2>();
+    const bool in_front = way_m.dot(front) > kFront * way_m.norm();
+    groups[in_front ? 0 : 1].emplace_back(ease, std::move(q));
+  }
+  const double smallest_m = kSmallestRadius * length_m_;
+  std::optional<WorkspaceProposal> best;
+  for (auto& group : groups) {
+    if (best && best->sphere.radius_m > kWorthwhile * length_m_) {
+      break;
+    }
+    std::ranges::stable_sort(group, std::greater<>{}, [](const auto& one) { return one.first; });
+    Postures homes;
+    for (std::size_t i = 0; i < std::min(kHomes, group.size()); ++i) {
+      homes.push_back(std::move(group[i].second));
+    }
+    if (const auto found = try_homes(homes, best ? best->sphere.radius_m : smallest_m)) {
+      best = found;
+    }
+  }
+  while (best && best->sphere.radius_m >= smallest_m) {
+    const bool is_good = has_good_tables(robot_, task_, *best, holding_);
+    // A good sphere is made smaller once more, as a margin for cases that were not checked.
+    set_radius(best->sphere, kRadiusStep * best->sphere.radius_m);
+    if (is_good) {
+      best->points_down = points_down;
+      return best;
+    }
+  }
+  return std::nullopt;
+}
+
+void Search::check_holding() {
+  HoldingEffort::Hardest easiest;
+  easiest.share = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& q : draw_postures()) {
+    if (!clearance_ || clearance_->find_lowest(q).excess_m <= 0) {
+      const HoldingEffort::Hardest hardest = holding_.find_hardest(q);
+      easiest = hardest.share < easiest.share ? hardest : easiest;
+    }
+  }
+  if (std::isfinite(easiest.share) && easiest.share > kMostHeldAtHome) {
+    refuse_to_hold(robot_, easiest,
+                   fmt::format("in the easiest of {} postures above the floor", kPostures));
+  }
+}
+
 }  // namespace
 
 void refuse_proposal(const RobotModel& robot, const std::string& what) {
   throw Error(ErrorKind::bad_data, fmt::format("robot '{}': {}", sanitize(robot.name), what));
+}
+
+void refuse_to_hold(const RobotModel& robot, const HoldingEffort::Hardest& hardest,
+                    const std::string& where) {
+  const Joint& joint = robot.joints[hardest.joint];
+  refuse_proposal(
+      robot, fmt::format(
+                 "joint {} ('{}') needs {:.4g} {} to hold the arm {}, its effort limit is {:.4g}; "
+                 "motors that gravity leaves less than {:.0f} % of their effort cannot control the "
+                 "arm: correct the limit or the masses in the robot's file, state springs and "
+                 "counterweights (robot.plant), carry less, or set another workspace",
+                 hardest.joint + 1, sanitize(joint.name), hardest.effort,
+                 joint.kind == JointKind::revolute ? "N m" : "N", where, joint.effort_limit,
+                 100 * (1 - kMostHeld)));
 }
 
 void coarsen(TrackingTask& task) {
@@ -228,49 +429,65 @@ ToolOrientation propose_orientation(const RobotModel& robot, const ToolTask& too
   return ToolOrientation::free;
 }
 
-WorkspaceProposal propose_workspace(const RobotModel& robot, const TrackingTask& task,
-                                    WorkspaceSphere sphere) {
+Eigen::Vector3d propose_tool_axis(const RobotModel& robot) {
+  // From the last joint that is not at the tip; in the tip's frame.
+  const Eigen::Isometry3d& tip = robot.tip_pose;
+  Eigen::Isometry3d pose = tip;
+  Eigen::Vector3d out = tip.linear().transpose() * tip.translation();
+  for (std::size_t i = robot.joint_count(); i-- > 0 && out.norm() < 1e-6;) {
+    const Joint& joint = robot.joints[i];
+    pose = joint.origin * pose;
+    out = pose.linear().transpose() * pose.translation();
+  }
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  if (out.norm() < 1e-6 || out.normalized().z() > kFront) {
+    return axis;
+  }
+  Eigen::Index largest = 0;
+  out.cwiseAbs().maxCoeff(&largest);
+  axis.setZero();
+  axis[largest] = out[largest] > 0 ? 1 : -1;
+  return axis;
+}
+
+std::optional<WorkspaceProposal> propose_workspace(const RobotModel& robot, TrackingTask task,
+                                                   WorkspaceSphere sphere,
+                                                   std::optional<ToolOrientation> orientation) {
   const ReadStep step(fmt::format("proposing a workspace for robot '{}'", sanitize(robot.name)));
-  const ToolTask& tool = task.tool;
-  const NumericKinematics kinematics(robot, tool, {}, true, task.solver);
-  kinematics.check_task(robot);
-  const double length_m = calc_length_m(robot);
-  sphere.normal = find_plane(kinematics, robot, tool, length_m);
-  const Eigen::Vector3d first_m = robot.joints.front().origin.translation();
-  std::optional<WorkspaceProposal> best;
-  const double smallest_m = kSmallestRadius * length_m;
-  double least_m = smallest_m;
-  for (const std::vector<double>& home : choose_homes(kinematics, robot)) {
-    const ToolPose centre = kinematics.calc_pose(home);
-    sphere.centre_m = centre.position_m;
-    const double most_m =
-        std::min(kLargestRadius * length_m, (centre.position_m - first_m).norm() / kKeepOff);
-    const NumericKinematics from_home(robot, tool, home, true, task.solver);
-    for (double radius_m = most_m; radius_m >= least_m; radius_m *= kRadiusStep) {
-      check_reading();
-      set_radius(sphere, radius_m);
-      if (can_follow(from_home, robot, sphere, centre.turn, home)) {
-        best = WorkspaceProposal{home, centre, sphere};
-        least_m = radius_m / kRadiusStep;
-        break;
+  if (!orientation && task.kinematics != KinematicsChoice::numeric &&
+      ElbowUpKinematics::make_if_suited(robot, task.ik_bug)) {
+    orientation = ToolOrientation::free;  // the closed form itself keeps the last link upright
+  }
+  bool is_first = true;
+  for (const bool points_down : {true, false}) {
+    // Any direction that is not vertical stands for those that the tool may have.
+    const Eigen::Vector3d direction =
+        points_down ? Eigen::Vector3d(-Eigen::Vector3d::UnitZ()) : Eigen::Vector3d::UnitX();
+    task.tool.turn =
+        Eigen::Quaterniond::FromTwoVectors(task.tool.axis, direction).toRotationMatrix();
+    for (const ToolOrientation one :
+         {ToolOrientation::pose, ToolOrientation::pointing, ToolOrientation::free}) {
+      if ((orientation && one != *orientation) || (points_down && one == ToolOrientation::free)) {
+        continue;
+      }
+      task.tool.orientation = one;
+      const NumericKinematics kinematics(robot, task.tool, {}, true, task.solver);
+      if (!kinematics.suits_task()) {
+        if (orientation && is_first && !points_down) {
+          kinematics.check_task(robot);
+        }
+        continue;
+      }
+      Search search(robot, task, sphere);
+      if (std::exchange(is_first, false)) {
+        search.check_holding();
+      }
+      if (auto found = search.find(points_down)) {
+        return found;
       }
     }
   }
-  while (best && best->sphere.radius_m >= smallest_m) {
-    const bool is_good = has_good_tables(robot, task, *best);
-    // A good sphere is made smaller once more, as a margin for cases that were not checked.
-    set_radius(best->sphere, kRadiusStep * best->sphere.radius_m);
-    if (is_good) {
-      return *best;
-    }
-  }
-  refuse_proposal(
-      robot, fmt::format("no place was found where its tool can move {:.2g} m along straight lines "
-                         "with task.orientation = \"{}\", within all joint ranges and off "
-                         "singularities; set another task.orientation, or workspace.centre_m, "
-                         "workspace.radius_m and task.home yourself",
-                         2 * smallest_m,
-                         tool_orientation_names()[static_cast<std::size_t>(tool.orientation)]));
+  return std::nullopt;
 }
 
 std::vector<TestCase> make_proposal_cases(const WorkspaceSphere& sphere) {

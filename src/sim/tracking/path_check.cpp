@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/text.hpp"
+#include "sim/kinematics/floor_clearance.hpp"
 
 namespace armwright {
 namespace {
@@ -49,7 +50,11 @@ std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const Target
   const double period_s = setup.task().control_period_s;
   const auto kinematics = setup.get_kinematics();
   std::vector<Worst> positions(table.joints), speeds(table.joints);
-  Worst singular;
+  Worst singular, low;
+  std::optional<FloorClearance> clearance;
+  if (setup.task().floor_m) {
+    clearance.emplace(robot, *kinematics, *setup.task().floor_m);
+  }
   std::span<const double> before = table.start_positions;
   for (std::size_t k = 0; k < table.segments.size(); ++k) {
     const Segment& segment = table.segments[k];
@@ -75,6 +80,16 @@ std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const Target
           speeds[i].consider(fault, fault.value - joint.speed_limit);
         }
       }
+      if (clearance && !std::ranges::equal(before, q)) {
+        const FloorClearance::Lowest lowest = clearance->find_lowest(q);
+        fault.kind = PathFault::Kind::floor;
+        fault.joint = lowest.link;
+        fault.value = lowest.height_m;
+        fault.limit = lowest.allowed_m;
+        if (lowest.excess_m > kRounding) {
+          low.consider(fault, lowest.excess_m);
+        }
+      }
       if (step % kStepsBetweenDecompositions == 0 && !std::ranges::equal(before, q)) {
         fault.kind = PathFault::Kind::singular;
         fault.value = kinematics->calc_dexterity(q);
@@ -96,8 +111,10 @@ std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const Target
       }
     }
   }
-  if (singular.fault) {
-    faults.push_back(*singular.fault);
+  for (const Worst& worst : {singular, low}) {
+    if (worst.fault) {
+      faults.push_back(*worst.fault);
+    }
   }
   return faults;
 }
@@ -118,6 +135,12 @@ std::string describe(const PathFault& fault, const RobotModel& robot) {
                          "{} would have to move at {:.4g} {}/s (at {:.2f} s), its limit "
                          "is {:.4g} {}/s",
                          name, fault.value, unit, fault.time_s, fault.limit, unit);
+    case PathFault::Kind::floor:
+      return where + fmt::format(
+                         "the end of link {} ('{}') would be {:.4g} m high (at {:.2f} s), at "
+                         "least {:.4g} m are needed above task.floor_m",
+                         fault.joint + 1, sanitize(robot.links[fault.joint].name), fault.value,
+                         fault.time_s, fault.limit);
     case PathFault::Kind::singular:
       break;
   }

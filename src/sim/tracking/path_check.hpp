@@ -7,6 +7,8 @@
 //             largest (numeric_kinematics.hpp). Near a singularity, small moves of the tool take
 //             large moves of joints. The fault names the joint that moves most while the tool
 //             hardly moves.
+//   floor     if the task has a floor: the end of a link is too low (floor_clearance.hpp). The fault
+//             names the joint that moves the link.
 #pragma once
 
 #include <string>
@@ -19,17 +21,17 @@ namespace armwright {
 inline constexpr double kSingularDexterity = 0.01;
 
 struct PathFault {
-  enum class Kind { position, speed, singular };
+  enum class Kind { position, speed, singular, floor };
   Kind kind = Kind::position;
   std::size_t joint = 0;
   std::size_t point = 0;  // the worst fault lies on the way to this point, counted from 1
   double time_s = 0;
-  double value = 0;  // rad, rad/s, m, m/s, or the ratio of singular values
+  double value = 0;  // rad, rad/s, m, m/s, the ratio of singular values, or a height in m
   double limit = 0;
 };
 
-// Returns the worst fault of every kind and joint: by joints, positions before speeds, and the
-// singularity last. Empty: the path has no fault. The table must be complete.
+// Returns the worst fault of every kind and joint: by joints, positions before speeds, then the
+// singularity, and the floor last. Empty: the path has no fault. The table must be complete.
 std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const TargetTable& table);
 
 // Returns a text such as "on the way to point 3: joint 2 ('shoulder') would have to move at

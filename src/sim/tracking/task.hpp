@@ -29,8 +29,8 @@ struct PhysicsSettings {
 enum class KinematicsChoice { automatic, palletiser, numeric };
 const std::vector<std::string>& kinematics_names();  // in the order of the enum
 
-// How a target's path has to respect the joints' ranges, the joints' speed limits and singularities
-// (path_check.hpp).
+// How a target's path has to respect the joints' ranges, the joints' speed limits, singularities
+// and the floor (path_check.hpp).
 //   ignore   the path may violate any of them, as in the thesis
 //   warn     inverse kinematics keeps the joints in their ranges
 //   enforce  likewise; a case whose path violates any of them is not simulated
@@ -52,6 +52,8 @@ struct TrackingTask {
   KinematicsChoice kinematics = KinematicsChoice::automatic;
   NumericSolver solver = NumericSolver::lanes;
   LimitPolicy limits = LimitPolicy::ignore;
+  // The height in the world below which no link may be (floor_clearance.hpp). Nothing: no floor.
+  std::optional<double> floor_m;
   ToolTask tool;
   // Joint positions (rad or m) from which numeric kinematics search. Empty: middles of the ranges.
   std::vector<double> home;

@@ -1,7 +1,9 @@
 // What is proposed for an arm of which only the URDF is known.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "problems/config/path_survey.hpp"
 #include "problems/config/problem_loader.hpp"
@@ -91,6 +93,167 @@ TEST(RobotProposal, PlanarArmsMoveInTheirPlane) {
   }
 }
 
+// Returns the URDF with its effort limits multiplied.
+std::string scale_efforts(std::string urdf, double factor) {
+  const std::string key = "effort=\"";
+  for (std::size_t at = urdf.find(key); at != std::string::npos; at = urdf.find(key, at + 1)) {
+    const std::size_t begin = at + key.size();
+    const std::size_t end = urdf.find('"', begin);
+    urdf.replace(begin, end - begin,
+                 fmt::format("{}", factor * std::stod(urdf.substr(begin, end - begin))));
+  }
+  return urdf;
+}
+
+// Returns the largest share of a joint's effort limit that holds the arm on unseen cases.
+double find_held_share(const TrackingProblem& problem) {
+  TrackingTask task = problem.config().task;
+  task.feed_forward = FeedForward::gravity;
+  const TrackingSetup setup(problem.config().robot, task);
+  double most = 0;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const TargetTable table = setup.make_targets(problem.get_set("test/unseen").make_case(i));
+    for (int step = 0; step < table.steps; ++step) {
+      for (std::size_t joint = 0; joint < table.joints; ++joint) {
+        most = std::max(most, std::abs(table.feed_forward(step)[joint]) /
+                                  setup.robot().joints[joint].effort_limit);
+      }
+    }
+  }
+  return most;
+}
+
+TEST(RobotProposal, ToolsPointDownAboveTheFloorAndBesideTheBase) {
+  const ProblemFolder folder;
+  folder.write("six.urdf", make_arm_urdf(3));
+  folder.write("five.urdf", make_arm_urdf(2));
+  for (const std::string& robot : {folder.path("six.urdf"), folder.path("five.urdf"),
+                                  std::string("irb4600_six"), std::string("arm7")}) {
+    SCOPED_TRACE(robot);
+    const LoadedProblem problem = load_robot(robot);
+    const TrackingConfig& config = problem.tracking()->config();
+    const TrackingTask& task = config.task;
+    ASSERT_NE(task.tool.orientation, ToolOrientation::free);
+    EXPECT_NEAR((task.tool.turn * task.tool.axis).z(), -1, 1e-6);
+    ASSERT_EQ(task.floor_m, 0);
+    EXPECT_GE(config.workspace.centre_m.z(), config.workspace.radius_m);
+    EXPECT_GT((config.workspace.centre_m - config.robot.joints.front().origin.translation())
+                  .head<2>()
+                  .norm(),
+              config.workspace.radius_m);
+    // Independently of the check of paths: no joint that can rise is below the floor.
+    const TrackingSetup& setup = problem.tracking()->setup();
+    const auto kinematics = setup.get_kinematics();
+    const TargetTable table =
+        setup.make_targets(problem.tracking()->get_set("test/unseen").make_case(1));
+    ASSERT_EQ(table.unreachable, "");
+    for (int step = 0; step < table.steps; step += 10) {
+      const auto places_m = kinematics->calc_places(table.positions(step));
+      for (std::size_t i = 2; i < places_m.size(); ++i) {
+        EXPECT_GT(places_m[i].z(), 0) << "place " << i;
+      }
+    }
+  }
+}
+
+TEST(RobotProposal, FloorsAreBelowTheBase) {
+  EXPECT_THAT(usage_error_of([] { load_robot("irb4600_six", {"task.floor_m=0.7"}); }),
+              testing::AllOf(testing::HasSubstr("task.floor_m is 0.7"),
+                             testing::HasSubstr("the arm's first joint is lower, at 0.495 m")));
+  const LoadedProblem low = load_robot("irb4600_six", {"task.floor_m=-0.2"});
+  EXPECT_EQ(low.tracking()->config().task.floor_m, -0.2);
+}
+
+TEST(RobotProposal, PathsBelowTheFloorAreFaults) {
+  const std::vector<std::string> line = {
+      "path.kind=line", set_key("path.from_m", "[1.4, -0.3, 0.1]"),
+      set_key("path.to_m", "[1.4, 0.3, -0.1]"), "task.floor_m=0"};
+  EXPECT_THAT(check_paths(load_robot("irb4600_six", line)),
+              testing::Contains(testing::HasSubstr("are needed above task.floor_m")));
+}
+
+// Gravity takes almost 90 % of what the motors have: slowing down does not help to hold the arm, so
+// the speed follows from the rest.
+TEST(RobotProposal, ArmsWhoseMotorsGravityNeedsAreNotSlowedDownInVain) {
+  const ProblemFolder folder;
+  folder.write("arm.urdf", make_arm_urdf(3));
+  const LoadedProblem strong = load_robot(folder.path("arm.urdf"));
+  folder.write("weak.urdf",
+               scale_efforts(make_arm_urdf(3), find_held_share(*strong.tracking()) / 0.85));
+  const LoadedProblem weak = load_robot(folder.path("weak.urdf"));
+  EXPECT_GT(find_held_share(*weak.tracking()), 0.6);
+  EXPECT_LE(find_held_share(*weak.tracking()), 0.95);
+  const auto duration_s = [](const LoadedProblem& problem) {
+    const TrackingConfig& config = problem.tracking()->config();
+    return calc_case_duration_s(config, config.task);
+  };
+  EXPECT_LT(duration_s(weak), 4 * duration_s(strong));
+}
+
+// Two joints of a redundant arm with nearly one axis: a short control period keeps their damping.
+TEST(RobotProposal, ControlPeriodsAreShortWhereJointsMoveEachOther) {
+  const ProblemFolder folder;
+  folder.write("arm.urdf", make_arm_urdf(4));
+  const LoadedProblem redundant = load_robot(folder.path("arm.urdf"));
+  const TrackingTask& task = redundant.tracking()->config().task;
+  EXPECT_LT(task.control_period_s, 0.01);
+  EXPECT_NEAR(task.control_period_s / task.physics.substeps, 0.001, 1e-12);
+  EXPECT_EQ(load_robot("planar2").tracking()->config().task.control_period_s, 0.01);
+  EXPECT_EQ(load_robot(folder.path("arm.urdf"), {"control.period_s=0.01"})
+                .tracking()
+                ->config()
+                .task.physics.substeps,
+            1);
+}
+
+double get_start_bandwidth(const LoadedProblem& problem) {
+  return nlohmann::json::parse(problem.resolved_json)
+      .at("variables")
+      .at("start_bandwidth_rad_per_s")
+      .get<double>();
+}
+
+// With a control period of 0.1 s, controllers of 10 rad/s swing up.
+TEST(RobotProposal, StartsThatFailAreMadeSlower) {
+  EXPECT_EQ(get_start_bandwidth(load_robot("planar2")), 10);
+  const std::vector<std::string> slow = {"control.period_s=0.1", "physics.substeps=100",
+                                         "physics.gravity_m_per_s2=0"};
+  const LoadedProblem backed_off = load_robot("planar2", slow);
+  EXPECT_LT(get_start_bandwidth(backed_off), 10);
+  const auto calc_error_m = [](const LoadedProblem& problem) {
+    const TrackingProblem& its = *problem.tracking();
+    const TargetTable table = its.setup().make_targets(its.get_set("test/unseen").make_case(0));
+    TrackingJob job;
+    job.design = &its.config().start;
+    job.targets = &table;
+    const TrackingResult result =
+        its.config().engines.judging->simulate(its.setup(), {&job, 1}).front();
+    return result.status == SimulationStatus::ok ? result.mean_error_m : 1e9;
+  };
+  std::vector<std::string> kept = slow;
+  kept.emplace_back("variables.start_bandwidth_rad_per_s=10");
+  EXPECT_LT(calc_error_m(backed_off), 0.1);
+  EXPECT_GT(calc_error_m(load_robot("planar2", kept)), calc_error_m(backed_off));
+}
+
+// Version 1.0 recorded neither a bandwidth nor a floor.
+TEST(RobotProposal, RecordsOfVersion1KeepTheirStart) {
+  const LoadedProblem first =
+      load_robot("arm7", {"control.period_s=0.004", "variables.start_bandwidth_rad_per_s=0"});
+  EXPECT_THAT(first.resolved_json, testing::Not(testing::HasSubstr("start_bandwidth")));
+  const LoadedProblem again = load_recorded_problem(first.resolved_json, first.name, "");
+  EXPECT_EQ(again.resolved_json, first.resolved_json);
+  EXPECT_EQ(first.tracking()->make_vector(first.tracking()->config().start),
+            again.tracking()->make_vector(again.tracking()->config().start));
+  // Its bound on D is that of a period of 10 ms, which is below the bound of 4 ms.
+  const LoadedProblem now =
+      load_robot("arm7", {"control.period_s=0.004", "variables.start_bandwidth_rad_per_s=10"});
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_LE(again.tracking()->config().start.joints[i].gains[2],
+              now.tracking()->config().start.joints[i].gains[2]);
+  }
+}
+
 // A path of the user's own: the speed and the controllers are proposed for it.
 TEST(RobotProposal, PathsOfTheUsersOwn) {
   const LoadedProblem problem =
@@ -143,16 +306,11 @@ TEST(RobotProposal, RefusesHalvesOfWhatBelongsTogether) {
 // Motors that cannot hold their own arm, and tips that move on a sphere.
 TEST(RobotProposal, SaysWhyNothingCanBeProposed) {
   const ProblemFolder folder;
-  std::string weak = make_arm_urdf(0);
-  for (std::size_t at = weak.find("effort=\""); at != std::string::npos;
-       at = weak.find("effort=\"", at + 1)) {
-    weak.replace(at, weak.find('"', at + 8) - at + 1, "effort=\"0.01\"");
-  }
-  folder.write("weak.urdf", weak);
+  folder.write("weak.urdf", scale_efforts(make_arm_urdf(0), 1e-4));
   EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { load_robot(folder.path("weak.urdf")); }),
               testing::AllOf(testing::HasSubstr("weak.urdf"),
-                             testing::HasSubstr("N m to hold the arm in its workspace, its effort "
-                                                "limit is 0.01")));
+                             testing::HasSubstr("N m to hold the arm in the easiest of 2000 "
+                                                "postures above the floor, its effort limit is")));
   folder.write("pan_tilt.urdf", R"(<robot name="pan_tilt"><link name="base"/>
 <joint name="pan" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/>
 <limit lower="-1" upper="1" velocity="1" effort="10"/></joint>
