@@ -217,12 +217,12 @@ double get_start_bandwidth(const LoadedProblem& problem) {
       .get<double>();
 }
 
-// With soft joints, controllers of 10 rad/s make this arm swing.
+// The weight of an arm with soft joints pulls it down; stiffer controllers than usual hold it better.
 TEST(RobotProposal, StartsThatFailGetOtherControllers) {
   EXPECT_EQ(get_start_bandwidth(load_robot("planar2")), 10);
   const std::vector<std::string> soft = {"robot.elastic_hz=5", "robot.armature_share=0.3"};
-  const LoadedProblem changed = load_robot("arm7", soft);
-  EXPECT_LT(get_start_bandwidth(changed), 10);
+  const LoadedProblem changed = load_robot("planar2", soft);
+  EXPECT_GT(get_start_bandwidth(changed), 10);
   const auto calc_error_m = [](const LoadedProblem& problem) {
     const TrackingProblem& its = *problem.tracking();
     const TargetTable table = its.setup().make_targets(its.get_set("test/unseen").make_case(0));
@@ -236,7 +236,7 @@ TEST(RobotProposal, StartsThatFailGetOtherControllers) {
   std::vector<std::string> kept = soft;
   kept.emplace_back("variables.start_bandwidth_rad_per_s=10");
   EXPECT_LT(calc_error_m(changed), 0.1);
-  EXPECT_GT(calc_error_m(load_robot("arm7", kept)), calc_error_m(changed));
+  EXPECT_GT(calc_error_m(load_robot("planar2", kept)), calc_error_m(changed));
 }
 
 // Version 1.0 recorded neither a bandwidth nor a floor.
