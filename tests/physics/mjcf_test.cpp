@@ -225,8 +225,15 @@ TEST(Mjcf, HasTheEffortLimitsOfItsJointsAlsoFromTheirClasses) {
 
 TEST(Mjcf, HasRotorsAndFrictionOnlyWithDynamics) {
   const RobotModel arm = load_urdf(kMjcfArms / "geared_arm.xml", {.dynamics = true});
-  EXPECT_EQ(arm.joints[0].plant, (JointPlant{.armature = 1.7, .viscous = 1.5, .coulomb = 0.4}));
-  EXPECT_EQ(arm.joints[1].plant, (JointPlant{.armature = 0.2, .viscous = 8, .coulomb = 0.4}));
+  JointPlant yaw;
+  yaw.armature = 1.7;
+  yaw.viscous = 1.5;
+  yaw.coulomb = 0.4;
+  EXPECT_EQ(arm.joints[0].plant, yaw);
+  JointPlant lift = yaw;
+  lift.armature = 0.2;  // of the default class
+  lift.viscous = 8;
+  EXPECT_EQ(arm.joints[1].plant, lift);
   const RobotModel ideal = load_urdf(kMjcfArms / "geared_arm.xml");
   EXPECT_FALSE(ideal.has_plant());
   EXPECT_THAT(ideal.notes,
@@ -352,7 +359,7 @@ TEST(Mjcf, AMeshThatOnlyGivesTheLooksMayBeMissing) {
       shape.pose.linear().isApprox(Eigen::Quaterniond(0.6, 0, 0.8, 0).toRotationMatrix(), 1e-5));
 }
 
-TEST(Mjcf, AMeshGivesTheMassThatMujocoFinds) {
+TEST(Mjcf, AMeshGivesTheMassOfItsVolume) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "parts");
   write_mjcf(folder / "parts/Cover.OBJ", kMjcfWedge);
@@ -360,7 +367,8 @@ TEST(Mjcf, AMeshGivesTheMassThatMujocoFinds) {
       folder / "arm.xml",
       make_hinge_arm(
           kMjcfCover + " density=\"2700\"/>" + kMjcfBar,
-          "<compiler meshdir=\"parts\"/><asset><mesh file=\"Cover.OBJ\" name=\"cover\" "
+          "<compiler meshdir=\"parts\" exactmeshinertia=\"true\"/><asset><mesh file=\"Cover.OBJ\" "
+          "name=\"cover\" "
           "scale=\"0.001 0.002 0.001\"/><mesh name=\"looks\" file=\"missing.stl\"/></asset>\n"));
   const RobotModel arm = load_urdf(folder / "arm.xml");
   EXPECT_THAT(arm.mass_files, ElementsAre(Pair("parts/Cover.OBJ", folder / "parts/Cover.OBJ")));
@@ -388,7 +396,7 @@ TEST(MjcfRefusal, OfJointsThatAreNotSimulatedOnTheChain) {
       refuse("<joint name=\"x\"/><joint name=\"y\"/>"),
       "arm.xml:6: joint 'y': is the second joint of body 'hand'; between base 'world' and tip "
       "'hand' each joint needs a body with a mass of its own: put a body with an <inertial> "
-      "between the joints");
+      "between the joints, or name a base below them (robot.base or --base)");
   EXPECT_EQ(refuse("<joint name=\"x\" type=\"slide\"/>"),
             "arm.xml:6: joint 'x': slides and has no range; give it one, in m");
   EXPECT_EQ(refuse("<joint name=\"x\" stiffness=\"3\"/>"),
@@ -428,8 +436,8 @@ TEST(MjcfRefusal, OfConstraintsAndTendonsThatActOnTheChain) {
       " acts on the chain between base 'world' and tip 'hand', which is not simulated: remove it, "
       "or "
       "name another base or tip (robot.base, robot.tip, --base, --tip)";
-  const std::string equality = std::string("arm.xml:11: this equality constraint") + kEnd;
-  const std::string tendon = std::string("arm.xml:11: this tendon") + kEnd;
+  const std::string equality = std::string("arm.xml:10: this equality constraint") + kEnd;
+  const std::string tendon = std::string("arm.xml:10: this tendon") + kEnd;
   EXPECT_EQ(refuse("<equality>\n<joint joint1=\"hinge\" joint2=\"wrist\"/></equality>"), equality);
   EXPECT_EQ(refuse("<equality>\n<joint joint1=\"wrist\"/></equality>"), equality);
   EXPECT_EQ(refuse("<equality>\n<connect body1=\"hand\" anchor=\"0 0 1\"/></equality>"), equality);
@@ -457,6 +465,15 @@ TEST(MjcfRefusal, OfABaseOrTipThatIsNone) {
       "prismatic joint");
   EXPECT_EQ(describe_mjcf_refusal(make_hinge_arm(kMjcfBar), {.density_kg_per_m3 = 2700}),
             "arm.xml: is MJCF, which gives every geom a density; leave the setting out");
+}
+
+// A few letters of it can fill the memory.
+TEST(MjcfRefusal, OfCompositeBodies) {
+  EXPECT_EQ(
+      describe_mjcf_refusal(make_hinge_arm(
+          kMjcfBar + "\n<composite type=\"grid\" count=\"9999 9999 1\" spacing=\"1\"/>")),
+      "arm.xml:7: <composite> makes bodies by the thousand, which no arm needs; remove it, or "
+      "give armwright the file of the arm alone");
 }
 
 // The library's message names the line in the file, also in an included one.

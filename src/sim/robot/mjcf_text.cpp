@@ -83,7 +83,7 @@ std::string escape(std::string_view value) {
 class Preparation {
  public:
   explicit Preparation(const std::string& name)
-      : folder_(std::filesystem::path(name).parent_path()) {}
+      : folder_(std::filesystem::path(name).parent_path()), open_{name} {}
 
   MjcfText prepare(std::string_view xml, const std::string& name) {
     const XMLElement& root = parse(xml, name);
@@ -91,7 +91,11 @@ class Preparation {
     // Since version 3, a range alone limits a joint or an actuator. Version 2.2 refuses such a file
     // unless the compiler is told so.
     open("mujoco", model == nullptr ? "" : fmt::format(" model=\"{}\"", escape(model)), {name, 1});
-    add_line("<compiler autolimits=\"true\"/>", {name, 1});
+    // Nothing is simulated with this model, so it needs no memory for contacts.
+    add_line(
+        "<compiler autolimits=\"true\"/><size njmax=\"0\" nconmax=\"0\"/><option><flag "
+        "constraint=\"disable\" contact=\"disable\"/></option>",
+        {name, 1});
     write_children(root, name, 1);
     add_line("</mujoco>", {name, 1});
     for (MjcfMesh& mesh : text_.meshes) {
@@ -160,6 +164,11 @@ class Preparation {
     if (tag == "include") {
       include(element, parent, file, depth);
       return;
+    }
+    if (tag == "composite") {
+      fail(element, file,
+           "<composite> makes bodies by the thousand, which no arm needs; remove it, or give "
+           "armwright the file of the arm alone");
     }
     if (kUnusedElements.contains(tag) || (parent == "mujoco" && kUnusedSections.contains(tag)) ||
         parent == "material" || (parent == "option" && tag != "flag")) {
@@ -252,7 +261,6 @@ class Preparation {
     const auto used = kUsedAttributes.find(tag);
     const bool is_tendon = tag == "spatial" || tag == "fixed";
     const char* file = element.Attribute("file");
-    const bool is_field = tag == "hfield" && file != nullptr;
     std::string text;
     for (const tinyxml2::XMLAttribute* attribute = element.FirstAttribute(); attribute != nullptr;
          attribute = attribute->Next()) {
@@ -264,7 +272,6 @@ class Preparation {
       if (kUnusedAttributes.contains(name) ||
           (used != kUsedAttributes.end() && !used->second.contains(name)) ||
           (is_tendon && (name == "armature" || name == "actuatorfrcrange")) ||
-          (is_field && (name == "nrow" || name == "ncol")) ||
           (tag == "position" && name == "ctrllimited")) {
         continue;
       }
@@ -277,6 +284,9 @@ class Preparation {
       }
       text += fmt::format(" {}=\"{}\"", name, escape(value));
     }
+    if (tag == "hfield") {
+      text += " nrow=\"2\" ncol=\"2\"";  // a height field has no mass
+    }
     if (file == nullptr || (tag != "mesh" && tag != "hfield")) {
       return text;
     }
@@ -287,7 +297,7 @@ class Preparation {
       text += fmt::format(" name=\"{}\"", escape(name));
     }
     if (tag == "hfield") {
-      return text + " nrow=\"2\" ncol=\"2\"";  // a height field has no mass
+      return text;
     }
     text += fmt::format(" file=\"{}\"", make_mesh_name(text_.meshes.size()));
     text_.meshes.push_back({std::move(name), file});
@@ -305,7 +315,7 @@ class Preparation {
   bool strips_paths_ = false;
   std::list<tinyxml2::XMLDocument> documents_;
   std::list<std::string> contents_;
-  std::vector<std::filesystem::path> open_;  // included files, each in the one before
+  std::vector<std::filesystem::path> open_;  // files, each included in the one before
   std::size_t bytes_ = 0, elements_ = 0, includes_ = 0;
   std::vector<std::string> floating_;  // bodies with gravity compensation
   MjcfText text_;
