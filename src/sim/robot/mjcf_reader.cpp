@@ -125,6 +125,11 @@ class MjcfBuilder {
     if (m_.jnt_limited[id] != 0) {
       joint.lower = m_.jnt_range[2 * id];
       joint.upper = m_.jnt_range[2 * id + 1];
+      if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || joint.lower > joint.upper) {
+        mjcf_.fail_joint(id, fmt::format("has the range {} to {}; it must be finite, with the "
+                                         "smaller end first",
+                                         joint.lower, joint.upper));
+      }
     } else if (slides(id)) {
       mjcf_.fail_joint(id, "slides and has no range; give it one, in m");
     }
