@@ -136,7 +136,8 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
   const auto names = list_configs(kind);
   if (std::find(names.begin(), names.end(), name_or_path) == names.end()) {
     throw Error(ErrorKind::usage, describe_unknown(get_singular(kind), name_or_path, names) +
-                                      fmt::format(" (or the path of a {} file)", extension));
+                                      fmt::format(" (or the path of a {} file)",
+                                                  kind == "robots" ? ".urdf or .xml" : extension));
   }
   return find_folder(kind) / (std::string(name_or_path) + extension);
 }

@@ -114,7 +114,7 @@ std::set<int> find_meshes(const mjModel& model, const std::set<int>& bodies) {
   return found;
 }
 
-std::string lower(std::string text) {
+std::string to_lower(std::string text) {
   std::ranges::transform(text, text.begin(), [](char c) {
     return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });
@@ -148,7 +148,7 @@ void CompiledMjcf::fail_joint(int joint, const std::string& what) const {
             fmt::format("joint '{}': {}", joint_name(joint), what));
 }
 
-CompiledMjcf compile(MjcfText text, const std::string& name) {
+CompiledMjcf compile_prepared(MjcfText text, const std::string& name) {
   MujocoModelHandle model = compile_with_stand_ins(text, name, kStandInEdge_m);
   return {name, std::move(text), std::move(model)};
 }
@@ -184,7 +184,7 @@ std::map<std::string, std::filesystem::path> load_mesh_masses(
       missing += fmt::format("{}'{}'", missing.empty() ? "" : ", ", file);
       continue;
     }
-    const std::string real = make_mesh_name(i, lower(path->extension().string()));
+    const std::string real = make_mesh_name(i, to_lower(path->extension().string()));
     const std::string content = read_file(*path, kMeshFileLimit_bytes);
     const std::string mark = fmt::format("\"{}\"", stand_in);
     xml.replace(xml.find(mark), mark.size(), fmt::format("\"{}\"", real));

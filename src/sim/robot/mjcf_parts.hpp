@@ -39,7 +39,7 @@ struct CompiledMjcf {
 };
 
 // Throws Error{bad_data} "FILE:LINE: what the library says" if the library refuses the file.
-CompiledMjcf compile(MjcfText text, const std::string& name);
+CompiledMjcf compile_prepared(MjcfText text, const std::string& name);
 
 // Gives the bodies of the model for which `moves` is true the masses that their meshes decide, if
 // any. Returns the mesh files that it read, by name as written. Throws Error{bad_data} for a mesh

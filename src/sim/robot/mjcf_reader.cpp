@@ -18,7 +18,7 @@
 namespace armwright {
 namespace {
 
-Eigen::Isometry3d make_pose(const mjtNum* position, const Eigen::Matrix3d& rotation) {
+Eigen::Isometry3d make_body_pose(const mjtNum* position, const Eigen::Matrix3d& rotation) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = Eigen::Vector3d(position[0], position[1], position[2]);
   pose.linear() = rotation;
@@ -50,8 +50,8 @@ class MjcfBuilder {
     const int site = chain_.site;
     robot_.tip_pose = in_links_[to_size(chain_.tip)];
     if (site >= 0) {
-      robot_.tip_pose = robot_.tip_pose * make_pose(m_.site_pos + 3 * site,
-                                                    make_rotation_of(m_.site_quat + 4 * site));
+      robot_.tip_pose = robot_.tip_pose * make_body_pose(m_.site_pos + 3 * site,
+                                                         make_rotation_of(m_.site_quat + 4 * site));
     }
     check_masses();
     robot_.notes = mjcf_.text.notes;
@@ -91,14 +91,15 @@ class MjcfBuilder {
     mj_kinematics(&m_, data.get());
     std::vector<Eigen::Isometry3d> poses;  // of the bodies in the world
     for (int body = 0; body < m_.nbody; ++body) {
-      poses.push_back(make_pose(data->xpos + 3 * body, make_rotation_of(data->xquat + 4 * body)));
+      poses.push_back(
+          make_body_pose(data->xpos + 3 * body, make_rotation_of(data->xquat + 4 * body)));
     }
     // A link's frame has the axes of its body, and its origin is on the joint's axis.
     links_.assign(chain_.joints.size() + 1, Eigen::Isometry3d::Identity());
     for (std::size_t i = 0; i < chain_.joints.size(); ++i) {
       const int joint = chain_.joints[i];
       links_[i + 1] = poses[to_size(m_.jnt_bodyid[joint])] *
-                      make_pose(m_.jnt_pos + 3 * joint, Eigen::Matrix3d::Identity());
+                      make_body_pose(m_.jnt_pos + 3 * joint, Eigen::Matrix3d::Identity());
     }
     for (int body = 0; body < m_.nbody; ++body) {
       in_links_.push_back(links_[chain_.carriers[to_size(body)]].inverse() * poses[to_size(body)]);
@@ -271,7 +272,7 @@ RobotModel parse_mjcf(std::string_view xml, const std::string& name, const Robot
                                        "setting out",
                                        name));
   }
-  CompiledMjcf mjcf = compile(prepare_mjcf(xml, name), name);
+  CompiledMjcf mjcf = compile_prepared(prepare_mjcf(xml, name), name);
   const MjcfChain chain = choose_mjcf_chain(mjcf, options);
   auto mass_files =
       load_mesh_masses(mjcf, [&](int body) { return chain.carriers[to_size(body)] > 0; });
