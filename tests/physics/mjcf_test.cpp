@@ -1,30 +1,14 @@
-// Arms in MJCF: the equations of motion of what is read are those of MuJoCo on the same file, and
-// what cannot be simulated is refused.
+// Arms in MJCF: the equations of motion of what is read are those of MuJoCo on the same file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "base/error.hpp"
+#include "mjcf_texts.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace armwright::physics_test {
 namespace {
-
-using testing::HasSubstr;
-
-std::string describe_mjcf_refusal(const std::string& xml,
-                                  const RobotOptions& options = {.dynamics = true}) {
-  try {
-    parse_urdf(xml, "arm.xml", options);
-    return "it was read";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), dynamic_cast<const RobotOptionError*>(&error) != nullptr
-                                ? ErrorKind::usage
-                                : ErrorKind::bad_data);
-    return error.what();
-  }
-}
 
 TEST(Mjcf, IsKnownByItsRootElement) {
   EXPECT_TRUE(
@@ -46,7 +30,6 @@ TEST(Mjcf, IsKnownByItsRootElement) {
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -60,6 +43,7 @@ namespace {
 
 using testing::Contains;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Pair;
 
@@ -212,11 +196,12 @@ TEST(Mjcf, HasTheEffortLimitsOfItsActuators) {
 TEST(Mjcf, HasTheEffortLimitsOfItsJointsAlsoFromTheirClasses) {
   const RobotModel arm = parse_urdf(R"(<mujoco>
     <compiler angle="radian"/>
-    <default><joint actuatorfrcrange="-12 12" actuatorgravcomp="true"/></default>
+    <default><joint actuatorfrcrange="-12 12" actuatorgravcomp="true"/>
+      <general ctrllimited="true"/></default>
     <worldbody><body name="a"><joint name="a" range="-1 1"/><geom size="0.1"/>
       <body name="b" pos="1 0 0"><joint name="b" actuatorfrcrange="-7 7"/><geom size="0.1"/></body>
     </body></worldbody>
-    <actuator><position joint="b" kp="10" kv="3" forcerange="-9 9"/></actuator></mujoco>)",
+    <actuator><position joint="b" kp="10" kv="3" inheritrange="1" forcerange="-9 9"/></actuator></mujoco>)",
                                     "arm.xml");
   EXPECT_DOUBLE_EQ(arm.joints[0].effort_limit, 12);
   EXPECT_DOUBLE_EQ(arm.joints[1].effort_limit, 7);
@@ -303,14 +288,6 @@ TEST(Mjcf, ShowsBoxesCylindersSpheresAndCapsules) {
             1e-12);
 }
 
-// One joint; %s stands for further elements after the actuators, or for the body's content.
-std::string make_hinge_arm(const std::string& in_body, const std::string& after = "") {
-  return "<mujoco>\n<compiler angle=\"radian\"/>\n<worldbody>\n<body name=\"arm\">\n"
-         "<joint name=\"hinge\" axis=\"0 1 0\" range=\"-1 1\"/>\n" +
-         in_body + "\n</body>\n</worldbody>\n" + after + "</mujoco>\n";
-}
-const std::string kMjcfBar = "<geom type=\"box\" size=\"0.1 0.1 0.4\"/>";
-
 TEST(Mjcf, SaysWhichGravityActs) {
   const auto read_notes = [](const std::string& option) {
     return parse_urdf(make_hinge_arm(
@@ -330,17 +307,15 @@ TEST(Mjcf, SaysWhichGravityActs) {
                   "-z"));
 }
 
-void write_mjcf(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream(file) << text;
+TEST(Mjcf, SaysThatGravityCompensationIsLeftOut) {
+  const RobotModel arm = parse_urdf(
+      make_hinge_arm(kMjcfBar + "<body name=\"hand\" gravcomp=\"1\">" + kMjcfBar + "</body>"),
+      "arm.xml");
+  EXPECT_THAT(arm.notes, Contains("gravcomp is left out: gravity acts on 'hand'"));
 }
 
 constexpr const char* kMjcfWedge =  // closed; its centre is away from its origin
     "v 0 0 0\nv 300 0 0\nv 0 200 0\nv 0 0 400\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
-const std::string kMjcfMesh =
-    "<asset><mesh name=\"cover\" file=\"parts/Cover.OBJ\" scale=\"0.001 0.002 0.001\"/></asset>\n";
-const std::string kMjcfCover =
-    "<geom type=\"mesh\" mesh=\"cover\" pos=\"0.1 0.2 0.3\" quat=\"0.6 0 0.8 0\" group=\"1\"";
-
 TEST(Mjcf, AMeshThatOnlyGivesTheLooksMayBeMissing) {
   const RobotModel arm = parse_urdf(
       make_hinge_arm(
@@ -376,39 +351,6 @@ TEST(Mjcf, AMeshGivesTheMassOfItsVolume) {
   EXPECT_NEAR(arm.links[0].inertial.mass_kg, 2700 * 0.3 * 0.4 * 0.4 / 6 + 32, 1e-5);
 }
 
-TEST(MjcfRefusal, OfAMeshThatGivesAMassAndIsMissing) {
-  EXPECT_EQ(describe_mjcf_refusal(make_hinge_arm(kMjcfCover + "/>", kMjcfMesh)),
-            "arm.xml:4: body 'arm': its mass comes from meshes, and there is no file "
-            "'parts/Cover.OBJ'; put it there, or give the body an <inertial>");
-}
-
-TEST(MjcfRefusal, OfJointsThatAreNotSimulatedOnTheChain) {
-  const auto refuse = [](const std::string& joints) {
-    return describe_mjcf_refusal(
-        make_hinge_arm(kMjcfBar + "<body name=\"hand\">" + joints + kMjcfBar + "</body>"));
-  };
-  EXPECT_EQ(
-      refuse("<joint name=\"wrist\" type=\"ball\"/>"),
-      "arm.xml:6: joint 'wrist': its type is ball; between base 'world' and tip 'hand' only "
-      "hinge and slide joints are simulated: name a base below it (robot.base or --base), such "
-      "as 'hand'");
-  EXPECT_EQ(
-      refuse("<joint name=\"x\"/><joint name=\"y\"/>"),
-      "arm.xml:6: joint 'y': is the second joint of body 'hand'; between base 'world' and tip "
-      "'hand' each joint needs a body with a mass of its own: put a body with an <inertial> "
-      "between the joints, or name a base below them (robot.base or --base)");
-  EXPECT_EQ(refuse("<joint name=\"x\" type=\"slide\"/>"),
-            "arm.xml:6: joint 'x': slides and has no range; give it one, in m");
-  EXPECT_EQ(refuse("<joint name=\"x\" stiffness=\"3\"/>"),
-            "arm.xml:6: joint 'x': has a spring (stiffness 3) and no range; a spring is simulated "
-            "over a finite range of at most one turn: give the joint such a range, or set its "
-            "stiffness to 0");
-  EXPECT_THAT(
-      refuse("<joint stiffness=\"3\" range=\"-4 4\"/>"),
-      HasSubstr("arm.xml:6: body 'hand': joint #1: has a spring (stiffness 3) and a range of "
-                "more than one turn"));
-}
-
 // A floating robot is simulated from a base below its free joint.
 TEST(Mjcf, AFreeJointAboveTheBaseIsHeld) {
   const std::string xml =
@@ -423,112 +365,6 @@ TEST(Mjcf, AFreeJointAboveTheBaseIsHeld) {
   EXPECT_THAT(arm.notes,
               Contains("joint 'root' is not between 'trunk' and 'arm': held at the pose of "
                        "the file, its 32 kg are part of the fixed base"));
-}
-
-TEST(MjcfRefusal, OfConstraintsAndTendonsThatActOnTheChain) {
-  const std::string bodies = kMjcfBar +
-                             "<site name=\"a\"/><body name=\"hand\"><joint name=\"wrist\"/>" +
-                             kMjcfBar + "<site name=\"b\"/></body>";
-  const auto refuse = [&](const std::string& after) {
-    return describe_mjcf_refusal(make_hinge_arm(bodies, after));
-  };
-  constexpr const char* kEnd =
-      " acts on the chain between base 'world' and tip 'hand', which is not simulated: remove it, "
-      "or "
-      "name another base or tip (robot.base, robot.tip, --base, --tip)";
-  const std::string equality = std::string("arm.xml:10: this equality constraint") + kEnd;
-  const std::string tendon = std::string("arm.xml:10: this tendon") + kEnd;
-  EXPECT_EQ(refuse("<equality>\n<joint joint1=\"hinge\" joint2=\"wrist\"/></equality>"), equality);
-  EXPECT_EQ(refuse("<equality>\n<joint joint1=\"wrist\"/></equality>"), equality);
-  EXPECT_EQ(refuse("<equality>\n<connect body1=\"hand\" anchor=\"0 0 1\"/></equality>"), equality);
-  EXPECT_EQ(refuse("<equality>\n<weld body1=\"arm\" body2=\"hand\"/></equality>"), equality);
-  EXPECT_EQ(refuse("<equality>\n<weld body1=\"arm\" body2=\"hand\" active=\"false\"/></equality>"),
-            "it was read");
-  EXPECT_EQ(refuse("<tendon>\n<fixed><joint joint=\"wrist\" coef=\"1\"/></fixed></tendon>"),
-            tendon);
-  EXPECT_EQ(refuse("<tendon>\n<spatial><site site=\"a\"/><site site=\"b\"/></spatial></tendon>"),
-            tendon);
-}
-
-TEST(MjcfRefusal, OfABaseOrTipThatIsNone) {
-  EXPECT_EQ(
-      describe_mjcf_refusal(make_hinge_arm(kMjcfBar + "<body name=\"hand\"/>"), {.tip = "hans"}),
-      "arm.xml: unknown link 'hans'; did you mean 'hand'? Valid: world, arm, hand");
-  EXPECT_THAT(describe_mjcf_refusal(
-                  make_hinge_arm(kMjcfBar + "<body name=\"left\"/><body name=\"right\"/>")),
-              HasSubstr("arm.xml: the links branch and end in 'left', 'right'; name the one"));
-  EXPECT_THAT(describe_mjcf_refusal(make_hinge_arm(kMjcfBar, "<asset/>"), {.base = "arm"}),
-              HasSubstr("no joint between the base 'arm' and the tip 'arm' moves"));
-  EXPECT_EQ(
-      describe_mjcf_refusal("<mujoco><worldbody/></mujoco>"),
-      "arm.xml:1: the robot has no moving joint; it needs at least one revolute, continuous or "
-      "prismatic joint");
-  EXPECT_EQ(describe_mjcf_refusal(make_hinge_arm(kMjcfBar), {.density_kg_per_m3 = 2700}),
-            "arm.xml: is MJCF, which gives every geom a density; leave the setting out");
-}
-
-// A few letters of it can fill the memory.
-TEST(MjcfRefusal, OfCompositeBodies) {
-  EXPECT_EQ(
-      describe_mjcf_refusal(make_hinge_arm(
-          kMjcfBar + "\n<composite type=\"grid\" count=\"9999 9999 1\" spacing=\"1\"/>")),
-      "arm.xml:7: <composite> makes bodies by the thousand, which no arm needs; remove it, or "
-      "give armwright the file of the arm alone");
-}
-
-// The library's message names the line in the file, also in an included one.
-TEST(MjcfRefusal, OfWhatTheLibraryDoesNotTakeNamesTheElementAndTheLine) {
-  EXPECT_EQ(describe_mjcf_refusal(make_hinge_arm(kMjcfBar + "\n<geom shape=\"box\"/>")),
-            "arm.xml:7: MuJoCo 2.2.2 does not take the file: XML Error: Schema violation: "
-            "unrecognized attribute: 'shape' Element 'geom'; change or remove what it names");
-  EXPECT_EQ(
-      describe_mjcf_refusal(make_hinge_arm("")),
-      "arm.xml:4: MuJoCo 2.2.2 does not take the file: Error: mass and inertia of moving bodies "
-      "must be larger than mjMINVAL Object name = arm, id = 1; change or remove what it names");
-  const TemporaryFolder folder;
-  write_mjcf(folder / "arm.xml", make_hinge_arm(kMjcfBar, "<include file=\"more.xml\"/>"));
-  write_mjcf(folder / "more.xml", "<x>\n\n<sensors/>\n</x>");
-  try {
-    load_urdf(folder / "arm.xml");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(),
-                HasSubstr("/more.xml:3: MuJoCo 2.2.2 does not take the file: XML Error: "
-                          "Schema violation: unrecognized element Element 'sensors'"));
-  }
-  EXPECT_FALSE(std::filesystem::exists("MUJOCO_LOG.TXT"));
-}
-
-TEST(MjcfRefusal, OfIncludesThatCannotBeRead) {
-  EXPECT_EQ(
-      describe_mjcf_refusal("<mujoco>\n<include file=\"gone.xml\"/></mujoco>"),
-      "arm.xml:2: <include>: there is no file 'gone.xml'; put it beside the file that includes "
-      "it");
-  EXPECT_EQ(describe_mjcf_refusal("<mujoco>\n<include/></mujoco>"),
-            "arm.xml:2: <include> has no file; it must name one");
-  const TemporaryFolder folder;
-  write_mjcf(folder / "arm.xml", "<mujoco><include file=\"arm.xml\"/></mujoco>");
-  try {
-    load_urdf(folder / "arm.xml");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("a file cannot include itself"));
-  }
-}
-
-}  // namespace
-}  // namespace armwright::physics_test
-
-#else
-
-namespace armwright::physics_test {
-namespace {
-
-TEST(Mjcf, NeedsMujoco) {
-  EXPECT_EQ(
-      describe_mjcf_refusal("<mujoco/>"),
-      "arm.xml: is MJCF, which needs the library MuJoCo: install libmujoco-dev and build with "
-      "-DARMWRIGHT_WITH_MUJOCO=ON, or use a URDF");
 }
 
 }  // namespace
