@@ -33,7 +33,7 @@ if(ARMWRIGHT_WITH_CERES)
   list(APPEND ARMWRIGHT_OPTIMIZER_LIBRARIES Ceres::ceres)
 endif()
 
-# A third engine that checks the others. It is built if the library is there; the build never requires it. (The CMake package of the library
+# A third engine that checks the others, and robots in MJCF. Both are built if the library is there; the build never requires it. (The CMake package of the library
 # requires OpenGL, which only its graphics need, so it is not used.)
 find_library(MUJOCO_LIBRARY mujoco)
 find_path(MUJOCO_INCLUDE_DIR mujoco/mujoco.h)
@@ -45,7 +45,7 @@ if(MUJOCO_LIBRARY AND MUJOCO_INCLUDE_DIR)
     set(mujoco_found ON) # 2.3 has other data structures
   endif()
 endif()
-option(ARMWRIGHT_WITH_MUJOCO "Engine mujoco, which checks the other engines" ${mujoco_found})
+option(ARMWRIGHT_WITH_MUJOCO "Engine mujoco, which checks the other engines, and robots in MJCF" ${mujoco_found})
 if(ARMWRIGHT_WITH_MUJOCO AND NOT mujoco_found)
   message(FATAL_ERROR "ARMWRIGHT_WITH_MUJOCO is ON, but MuJoCo 2.2 was not found; install the Debian package libmujoco-dev or set the "
                       "option to OFF")

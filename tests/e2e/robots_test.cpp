@@ -110,5 +110,61 @@ TEST_F(Robots, ThatSlideGoThatWayToo) {
   expect_tuned({"--robot", "scara.urdf"});
 }
 
+// Two joints that turn and one that slides, with its motors in a file of their own.
+constexpr const char* kMjcf = R"(<mujoco model="mast"><compiler angle="radian"/>
+<default><joint damping="0.5" armature="0.02"/></default>
+<worldbody><body name="mast" pos="0 0 0.5">
+  <joint name="turn" axis="0 0 1" range="-2.5 2.5"/>
+  <inertial pos="0 0 0.1" mass="5" diaginertia="0.05 0.05 0.03"/>
+  <body name="boom" pos="0 0 0.3"><joint name="lift" axis="0 1 0" range="-1 1"/>
+    <geom type="capsule" fromto="0 0 0 0.5 0 0" size="0.03"/>
+    <body name="reach" pos="0.5 0 0"><joint name="slide" type="slide" axis="1 0 0" range="0 0.3"/>
+      <geom type="box" pos="0.1 0 0" size="0.1 0.02 0.02"/><site name="tool" pos="0.2 0 0"/>
+    </body></body></body></worldbody>
+<include file="motors.xml"/></mujoco>
+)";
+constexpr const char* kMotors = R"(<mujoco><actuator>
+<motor joint="turn" ctrlrange="-60 60"/><motor joint="lift" ctrlrange="-9 9" gear="10"/>
+<motor joint="slide" ctrlrange="-200 200"/></actuator></mujoco>
+)";
+
+TEST_F(Robots, InMjcfGoThatWayTooAndTheirFilesAreInputs) {
+  write("arm.xml", kMjcf);
+  write("motors.xml", kMotors);
+  write("arm.plant.toml", "[joint.slide]\ncoulomb_n = 3\n");
+  if (!std::filesystem::exists(ARMWRIGHT_TEST_LIBRARIES "/libcart_pole.so")) {
+    GTEST_SKIP() << "armwright was built without MuJoCo";
+  }
+  const Outcome list = run_program(folder_.path(), {"list", "robots", "arm.xml", "--json"});
+  ASSERT_EQ(list.exit_code, 0) << list.err;
+  const json arm = json::parse(list.out);
+  EXPECT_EQ(arm.at("name"), "mast");
+  EXPECT_EQ(arm.at("joints").at(1).at("effort_limit_n_m"), 90);
+  EXPECT_EQ(arm.at("joints").at(1).at("plant").at("armature_kg_m2"), 0.02);
+  EXPECT_EQ(arm.at("joints").at(2).at("plant").at("coulomb_n"), 3);
+  const std::vector<std::string> tune = {"optimize", "--robot", "arm.xml", "--tip", "tool",
+                                         "--budget", "120",     "--out",   "run"};
+  const Outcome tuned = run(tune);
+  ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
+  std::ifstream manifest(folder_.path() / "run/manifest.json");
+  const json inputs = json::parse(manifest).at("configuration").at("inputs");
+  for (const char* file : {"arm.xml", "motors.xml", "arm.plant.toml"}) {
+    EXPECT_TRUE(inputs.contains(file)) << file;
+  }
+  const auto export_as = [&](const std::string& format) {
+    return run_program(folder_.path(), {"export", "run", "--format", format, "--out", format});
+  };
+  const Outcome urdf = export_as("urdf");
+  EXPECT_EQ(urdf.exit_code, 2);
+  EXPECT_THAT(urdf.err, HasSubstr("arm.xml), and the format urdf changes the limits of a URDF; "
+                                  "ros2-control and datasheet can be exported"));
+  const Outcome datasheet = export_as("datasheet");
+  EXPECT_EQ(datasheet.exit_code, 0) << datasheet.err;
+  write("motors.xml", std::string(kMotors) + "<!-- other -->");
+  const Outcome changed = export_as("ros2-control");
+  EXPECT_EQ(changed.exit_code, 4);
+  EXPECT_THAT(changed.err, HasSubstr("have changed since the run: motors.xml"));
+}
+
 }  // namespace
 }  // namespace armwright

@@ -260,9 +260,10 @@ void OverrideOptions::add_to(CLI::App& command, bool with_training) {
       ->allow_extra_args(false);
   engines.add_to(command, with_training);
   command
-      .add_option("--robot", robot,
-                  "An arm of your own, a URDF file, or a shipped one (armwright list robots); the\n"
-                  "same as --set robot.urdf=FILE. Without a problem, the problem is 'robot'")
+      .add_option(
+          "--robot", robot,
+          "An arm of your own, a URDF or MJCF file, or a shipped one (armwright list robots);\n"
+          "the same as --set robot.urdf=FILE. Without a problem, the problem is 'robot'")
       ->type_name("FILE");
   command
       .add_option("--base", base,

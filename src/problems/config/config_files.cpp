@@ -118,8 +118,10 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
   const std::string extension = get_extension(kind);
   const std::filesystem::path path(name_or_path);
   const bool has_folder = name_or_path.find('/') != std::string_view::npos;
-  const bool is_xacro = kind == "robots" && path.extension() == ".xacro";  // load_urdf() refuses it
-  if (has_folder || path.extension() == extension || is_xacro) {
+  // Shipped robots are URDF files; load_urdf() also reads MJCF, and refuses xacro.
+  const bool is_other_robot =
+      kind == "robots" && (path.extension() == ".xml" || path.extension() == ".xacro");
+  if (has_folder || path.extension() == extension || is_other_robot) {
     for (const auto& candidate : {beside / path, path}) {
       if (is_file(candidate)) {
         return candidate;
@@ -134,7 +136,8 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
   const auto names = list_configs(kind);
   if (std::find(names.begin(), names.end(), name_or_path) == names.end()) {
     throw Error(ErrorKind::usage, describe_unknown(get_singular(kind), name_or_path, names) +
-                                      fmt::format(" (or the path of a {} file)", extension));
+                                      fmt::format(" (or the path of a {} file)",
+                                                  kind == "robots" ? ".urdf or .xml" : extension));
   }
   return find_folder(kind) / (std::string(name_or_path) + extension);
 }

@@ -19,7 +19,8 @@
 namespace armwright {
 
 const Setting<std::string> kRobotUrdf{
-    "urdf", kNoDefault, "the robot: a URDF beside this file, or the name of a shipped one"};
+    "urdf", kNoDefault,
+    "the robot: a URDF or MJCF file beside this one, or the name of a shipped one"};
 
 namespace {
 
@@ -38,10 +39,12 @@ const Setting<double> kRobotMassScale{"mass_scale",
                                       {.lower = 0.01, .upper = 100},
                                       TrackingConfig{}.mass_scale,
                                       "factor on every mass and inertia of the robot"};
-const Setting<bool> kRobotDynamics{
-    "dynamics", RobotOptions{}.dynamics,
-    "whether joints have the friction of <dynamics> in the URDF, and a proposed start its effort "
-    "limits (the problem robot, which --robot uses, has true)"};
+const Setting<bool> kRobotDynamics{"dynamics", RobotOptions{}.dynamics,
+                                   "whether joints have the friction of <dynamics> in the URDF, or "
+                                   "the rotors, friction and springs "
+                                   "of an MJCF file, and a proposed start its effort limits (the "
+                                   "problem robot, which --robot uses, "
+                                   "has true)"};
 const Setting<std::string> kRobotPlant{
     "plant", "",
     "file with rotor inertia, friction, elasticity and counterbalances of the joints; auto: "

@@ -13,6 +13,7 @@
 #include "report/deliverables/ros2_control.hpp"
 #include "report/formats/export_files.hpp"
 #include "report/formats/run_traces.hpp"
+#include "sim/robot/robot_model.hpp"
 #include "sim/robot/urdf_effort_writer.hpp"
 #include "sim/tracking/designed_arm.hpp"
 #include "study/run/run.hpp"
@@ -85,6 +86,12 @@ std::string read_urdf_of(const FinishedArm& arm, const fs::path& file) {
         fmt::format(
             "{}: is not the file that the run used; restore it as it was, or optimize again",
             sanitize(file.string())));
+  }
+  if (is_mjcf(xml)) {
+    refuse_run(arm.run.folder,
+               fmt::format("the robot's file is MJCF ({}), and the format urdf changes the limits "
+                           "of a URDF; ros2-control and datasheet can be exported",
+                           sanitize(file.string())));
   }
   return xml;
 }

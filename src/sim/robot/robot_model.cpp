@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "sim/robot/mjcf.hpp"
 #include "sim/robot/urdf.hpp"
 
 namespace armwright {
@@ -95,6 +96,26 @@ Inertial transform(const Inertial& body, const Eigen::Isometry3d& pose) {
   return {body.mass_kg, pose * body.com_m, rotation * body.inertia_kg_m2 * rotation.transpose()};
 }
 
+bool is_mjcf(std::string_view xml) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (xml.starts_with(kByteOrderMark)) {
+    xml.remove_prefix(kByteOrderMark.size());
+  }
+  while (true) {
+    xml.remove_prefix(std::min(xml.find_first_not_of(" \t\r\n"), xml.size()));
+    const std::string_view end = xml.starts_with("<!--") ? "-->"
+                                 : xml.starts_with("<?") ? "?>"
+                                                         : "";
+    if (end.empty()) {
+      break;
+    }
+    const std::size_t at = xml.find(end);
+    xml.remove_prefix(at == std::string_view::npos ? xml.size() : at + end.size());
+  }
+  constexpr std::string_view kRoot = "<mujoco";
+  return xml.starts_with(kRoot) && xml.find_first_of(" \t\r\n/>", kRoot.size()) == kRoot.size();
+}
+
 RobotModel load_urdf(const std::filesystem::path& file, const RobotOptions& options) {
   if (file.extension() == ".xacro") {
     throw Error(ErrorKind::bad_data, fmt::format("{}: {}", file.string(), kXacroAdvice));
@@ -109,7 +130,8 @@ RobotModel parse_urdf(std::string_view xml, const std::string& name, const Robot
                                        "0 for none",
                                        name, options.density_kg_per_m3));
   }
-  return build_model(check_urdf(xml, name, options), name, options);
+  return is_mjcf(xml) ? parse_mjcf(xml, name, options)
+                      : build_model(check_urdf(xml, name, options), name, options);
 }
 
 RobotModel add_load(RobotModel model, double mass_kg, const std::optional<LoadBody>& body) {

@@ -1,5 +1,5 @@
 // The model of a robot arm: a serial chain of revolute and prismatic joints on a fixed base. It is
-// read from a URDF file. The reader validates everything that it uses; for example, it refuses
+// read from a URDF file or an MJCF file. The reader validates everything that it uses; for example, it refuses
 // values that are not finite numbers, negative masses, and inertia tensors that no body can have.
 //
 // Frames: a link's frame is its joint's frame, as in URDF. The frame of a prismatic joint moves
@@ -88,7 +88,8 @@ struct RobotModel {
   // Notes for the user, one line each, safe to print on a terminal. They name the parts of the file
   // that simulations ignore and the assumptions that the reader made.
   std::vector<std::string> notes;
-  // The mesh files from which masses were computed, by their names as written in the URDF.
+  // The mesh files from which masses were computed, and files that an MJCF file includes, by their
+  // names as written in the robot's file.
   std::map<std::string, std::filesystem::path> mass_files;
 
   std::size_t joint_count() const { return joints.size(); }
@@ -139,6 +140,11 @@ class RobotOptionError final : public Error {
 // without <inertial> gets the mass properties of its visual shapes (shape_mass.hpp).
 // RobotModel::notes names these assumptions and all parts that are ignored (docs/robots.md).
 //
+// A file whose root element is <mujoco> is MJCF. Its bodies are the links, hinge joints are
+// revolute, slide joints prismatic, and base and tip may also be sites. Other joints are held at
+// their reference position (ref). With `options.dynamics`, a joint has its armature, damping,
+// frictionloss and spring. Limits of effort are those of the actuators.
+//
 // Throws RobotOptionError if
 // - the base or tip is not a link, or the base is not above the tip,
 // - no joint between them moves,
@@ -157,10 +163,15 @@ class RobotOptionError final : public Error {
 // - on the chain: a revolute or prismatic joint without limits, lower > upper, speed or effort
 //   limits < 0, mimic, and any type except revolute, continuous, prismatic and fixed.
 //
+// and for MJCF: what MuJoCo 2.2 does not take, ball and free joints on the chain, two joints in one
+// body of it, equality constraints and tendons that act on it, and builds without MuJoCo.
+//
 // load_urdf() throws Error{io} if the file cannot be read.
 RobotModel load_urdf(const std::filesystem::path& file, const RobotOptions& options = {});
 RobotModel parse_urdf(std::string_view xml, const std::string& name,
                       const RobotOptions& options = {});
+// Returns whether the root element of the text is <mujoco>.
+bool is_mjcf(std::string_view xml);
 
 // A load of the user's own, in the frame of the tip and for each kg of its mass.
 struct LoadBody {

@@ -90,7 +90,7 @@ class Scanner {
         if (previous != '/') {
           open_.push_back(element);
           if (open_.size() > kUrdfDepthLimit) {
-            fail(fmt::format("elements are nested deeper than {}; a URDF needs about 6",
+            fail(fmt::format("elements are nested deeper than {}, the limit for a robot",
                              kUrdfDepthLimit));
           }
         }
@@ -108,7 +108,7 @@ class Scanner {
   // predefined entities and numeric character references are valid.
   void check_entity() const {
     if (rest_.front() == '\0') {
-      fail("contains a NUL byte; a URDF is plain text in UTF-8");
+      fail("contains a NUL byte; a robot is plain text in UTF-8");
     }
     if (rest_.front() != '&') {
       return;
@@ -138,7 +138,7 @@ void scan_urdf(std::string_view xml, const std::string& name) {
   if (xml.size() > kUrdfLimit_bytes) {
     fail_urdf(
         name, 1,
-        fmt::format("has {} bytes; the limit for a URDF is {}", xml.size(), kUrdfLimit_bytes));
+        fmt::format("has {} bytes; the limit for a robot is {}", xml.size(), kUrdfLimit_bytes));
   }
   if (xml.find_first_not_of(" \t\r\n") == std::string_view::npos) {
     fail_urdf(name, 1, "is empty; a URDF has one <robot> element");

@@ -335,12 +335,12 @@ TEST(UrdfText, RefusesDeepNesting) {
     deep += "<a>";
   }
   EXPECT_EQ(message_of(deep),
-            "robot.urdf:2: elements are nested deeper than 64; a URDF needs about 6");
+            "robot.urdf:2: elements are nested deeper than 64, the limit for a robot");
 }
 
 TEST(UrdfText, RefusesTooMuchOfAnything) {
   EXPECT_THAT(message_of(std::string((8u << 20) + 1, ' ')),
-              HasSubstr("8388609 bytes; the limit for a URDF is 8388608"));
+              HasSubstr("8388609 bytes; the limit for a robot is 8388608"));
 
   std::string many = "<robot name=\"many\">";
   for (int i = 0; i < 60'000; ++i) {

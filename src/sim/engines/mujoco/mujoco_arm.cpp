@@ -3,39 +3,25 @@
 #include "sim/engines/mujoco/mujoco_arm.hpp"
 
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "sim/kinematics/kinematics.hpp"
+#include "sim/robot/mujoco_library.hpp"
 #include "sim/tracking/engine_support.hpp"
 
 namespace armwright {
 namespace {
 
-static_assert(sizeof(mjtNum) == sizeof(double), "armwright needs MuJoCo in double precision");
-
-void delete_files(mjVFS* files) {
-  mj_deleteVFS(files);
-  delete files;
-}
-// Frees an object of MuJoCo with the given function.
-template <auto kFree>
-struct MujocoDeleter {
-  void operator()(auto* object) const { kFree(object); }
-};
-using ModelHandle = std::unique_ptr<mjModel, MujocoDeleter<mj_deleteModel>>;
-using DataHandle = std::unique_ptr<mjData, MujocoDeleter<mj_deleteData>>;
-using FilesHandle = std::unique_ptr<mjVFS, MujocoDeleter<delete_files>>;
+using ModelHandle = MujocoModelHandle;
+using DataHandle = MujocoDataHandle;
 
 [[noreturn]] void throw_mujoco_message(const char* message) {
   throw DivergenceError(fmt::format("MuJoCo stopped: {}", message));
@@ -110,20 +96,8 @@ std::string make_mjcf(const RobotModel& robot, const PhysicsSettings& physics) {
 
 ModelHandle compile(const std::string& mjcf, const std::string& robot_name) {
   constexpr const char* kFile = "arm.xml";
-  const FilesHandle files(new mjVFS);  // 2 MB: not zeroed, not on the stack
-  mj_defaultVFS(files.get());
-  if (mj_makeEmptyFileVFS(files.get(), kFile, static_cast<int>(mjcf.size())) != 0) {
-    throw std::bad_alloc();
-  }
-  std::memcpy(files->filedata[mj_findFileVFS(files.get(), kFile)], mjcf.data(), mjcf.size());
-  char message[1000] = "";
-  ModelHandle model;
-  {
-    static std::mutex mutex;  // all threads share the text that the library read last
-    const std::lock_guard lock(mutex);
-    model.reset(mj_loadXML(kFile, files.get(), message, sizeof message));
-    mj_freeLastXML();
-  }
+  std::string message;
+  ModelHandle model = compile_mjcf(kFile, {{kFile, mjcf}}, message);
   if (model == nullptr) {
     throw Error(ErrorKind::bad_data, fmt::format("MuJoCo does not take the robot '{}': {}",
                                                  sanitize(robot_name), sanitize(message)));
