@@ -126,14 +126,16 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
 
 // Loads the problem as it was when the plan was made: on another SIMD level, because "auto" may
 // choose another one on this machine, or as the plain form of a function, with the scalar solver of
-// the inverse kinematics, or with ideal joints, as in version 1.0. Returns false if none of these
+// the inverse kinematics, or with ideal joints and controllers that start empty, as in version 1.0. Returns false if none of these
 // gives the recorded configuration.
 bool load_as_recorded(const NamedProblem& named, StudyProblem& problem) {
   std::vector<std::vector<std::string>> variants;
   if (problem.loaded.function) {
     variants = {{kPlainForm}};
   } else if (problem.loaded.tracking()) {
-    variants = {{kScalarSolver}, {kNoDynamics, kNoPlant}, {kScalarSolver, kNoDynamics, kNoPlant}};
+    variants = {{kScalarSolver},
+                {kNoDynamics, kNoPlant, kEmptyStart},
+                {kScalarSolver, kNoDynamics, kNoPlant, kEmptyStart}};
     const std::vector<std::vector<std::string>> old = variants;
     for (const std::string& level : supported_simd_names()) {
       const std::string simd = "physics.simd=" + level;

@@ -92,6 +92,11 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
   if (problem.loaded.tracking() != nullptr && !resolved["robot"].contains("plant")) {
     settings.emplace_back(kNoPlant);
   }
+  const auto control = resolved.find("control");
+  if (problem.loaded.tracking() != nullptr &&
+      (control == resolved.end() || !control->contains("start"))) {
+    settings.emplace_back(kEmptyStart);
+  }
   LoadedProblem loaded = load_for_method(problem, optimizer, settings, programs);
   if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {
     throw Error(ErrorKind::usage,
