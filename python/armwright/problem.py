@@ -80,8 +80,9 @@ class DesignEvaluation:
     Attributes
     ----------
     summary : dict
-        mean_error_m, median_error_m, percentile_95_error_m, worst_error_m, failures, without_number, total_torque_n_m, mean_energy_j, cases,
-        design, problem, test_set. A number that does not exist is None.
+        mean_error_m, median_error_m, percentile_95_error_m, worst_error_m, failures, without_number, error_while_moving_rms_m,
+        error_while_moving_peak_m, error_after_start_up_m, total_torque_n_m, mean_energy_j, cases, design, problem, test_set; total_force_n
+        if a joint slides. The errors in motion are missing if no case has a number. A number that does not exist is None.
     errors_m : masked array (cases,)
         A case without a number is masked.
     energies_j : masked array (cases,)

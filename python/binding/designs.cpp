@@ -98,18 +98,20 @@ json judge(const TrackingProblem& problem, const DesignEvaluation& evaluation) {
 json summarize(const DesignEvaluation& evaluation, const std::string& design,
                const std::string& problem, const std::string& set) {
   const ErrorSummary& summary = evaluation.summary;
-  return {{"design", design},
-          {"problem", problem},
-          {"test_set", set},
-          {"cases", summary.cases},
-          {"mean_error_m", optional_to_json(summary.mean)},
-          {"median_error_m", optional_to_json(summary.median)},
-          {"percentile_95_error_m", optional_to_json(summary.percentile_95)},
-          {"worst_error_m", optional_to_json(summary.worst)},
-          {"failures", summary.failures},
-          {"without_number", summary.without_number},
-          {"total_torque_n_m", evaluation.total_torque_n_m},
-          {"mean_energy_j", optional_to_json(evaluation.mean_energy_j)}};
+  json all = {{"design", design},
+              {"problem", problem},
+              {"test_set", set},
+              {"cases", summary.cases},
+              {"mean_error_m", optional_to_json(summary.mean)},
+              {"median_error_m", optional_to_json(summary.median)},
+              {"percentile_95_error_m", optional_to_json(summary.percentile_95)},
+              {"worst_error_m", optional_to_json(summary.worst)},
+              {"failures", summary.failures},
+              {"without_number", summary.without_number},
+              {"total_torque_n_m", optional_to_json(evaluation.efforts.torque_n_m)},
+              {"mean_energy_j", optional_to_json(evaluation.mean_energy_j)}};
+  add_motion(evaluation.motion, evaluation.efforts, all);
+  return all;
 }
 
 // Evaluates a design on the first `count` cases of a set. `design` is a name or a path, "start", or

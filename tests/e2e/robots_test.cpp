@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -108,6 +109,59 @@ INSTANTIATE_TEST_SUITE_P(E2e, ShippedRobots,
 TEST_F(Robots, ThatSlideGoThatWayToo) {
   write("scara.urdf", kScara);
   expect_tuned({"--robot", "scara.urdf"});
+  // Newtons are not added to newton metres.
+  const json result = json::parse(read_text(folder_.path() / "tuned/scara.urdf/result.json"));
+  const json efforts = result.at("winner").at("efforts");
+  EXPECT_EQ(efforts.at("total_force_n"), 150);
+  EXPECT_GT(efforts.at("total_torque_n_m"), 150);
+  const auto names = result.at("metrics").get<std::vector<std::string>>();
+  const auto at =
+      static_cast<std::size_t>(std::ranges::find(names, "total_torque") - names.begin());
+  EXPECT_DOUBLE_EQ(efforts.at("total_torque_n_m").get<double>() + 150,
+                   result.at("winner").at("test").at("metrics").at(at).get<double>());
+  const Outcome shown = run_program(folder_.path(), {"show", "tuned/scara.urdf"});
+  EXPECT_THAT(shown.out, testing::AllOf(testing::HasSubstr("  total force           150.0 N"),
+                                        testing::HasSubstr("  error while moving    RMS ")));
+  const Outcome evaluated =
+      run({"evaluate", "tuned/scara.urdf/winner.toml", "--robot", "scara.urdf", "--json"});
+  const json summary = json::parse(evaluated.out).at("summary");
+  EXPECT_EQ(summary.at("total_force_n"), 150);
+  EXPECT_EQ(summary.at("total_torque_n_m"), efforts.at("total_torque_n_m"));
+  const json motion = result.at("winner").at("test_motion");
+  for (const char* key :
+       {"error_while_moving_rms_m", "error_while_moving_peak_m", "error_after_start_up_m"}) {
+    EXPECT_EQ(summary.at(key), motion.at(key)) << key;
+  }
+}
+
+// The controllers hold the arm from the first period on, unless they are told to start empty.
+TEST_F(Robots, DoNotSagWhenTheyAreEnabled) {
+  const auto evaluate = [&](const std::string& start) {
+    const Outcome outcome = run({"evaluate", "start", "--robot", "arm7", "--json", "--set",
+                                 "task.speed_m_per_s=0.02", "--set", "control.start=" + start});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return json::parse(outcome.out).at("summary").at("error_after_start_up_m").get<double>();
+  };
+  const double empty_m = evaluate("empty");
+  EXPECT_GT(empty_m, 0.05);
+  EXPECT_LT(evaluate("gravity"), empty_m / 10);
+}
+
+// The data sheet says how the run was made and how its winner is simulated again.
+TEST_F(Robots, HaveADatasheetWithBothCommands) {
+  const std::vector<std::string> made = {"optimize", "--robot", "planar2", "--budget", "40"};
+  std::vector<std::string> words = made;
+  words.insert(words.end(), {"--out", "planar"});
+  ASSERT_EQ(run(words).exit_code, 0);
+  const Outcome outcome =
+      run_program(folder_.path(), {"export", "planar", "--format", "datasheet", "--out", "sheet"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string html = read_text(folder_.path() / "sheet/datasheet.html");
+  EXPECT_THAT(html,
+              testing::HasSubstr("To make it: armwright optimize --robot planar2 --budget 40"));
+  EXPECT_THAT(html, testing::ContainsRegex("To simulate it again: armwright evaluate winner.toml "
+                                           "--problem robot --set .*planar2.urdf"));
+  EXPECT_THAT(html, testing::HasSubstr("start with integrals that hold the arm against gravity"));
 }
 
 // Two joints that turn and one that slides, with its motors in a file of their own.

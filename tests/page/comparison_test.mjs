@@ -15,7 +15,7 @@ after(() => browser.close());
 test('two runs: the first screen says which one is better, and both move together', async () => {
   const { page, expect_no_faults } = await open_page(browser, join(kFolder, 'comparison.html'));
   const headline = await page.locator('[data-figure=headline]').innerText();
-  assert.match(headline, /[AB] has the smaller mean error on the test set: [\d.]+ mm against [\d.]+ mm/);
+  assert.match(headline, /[AB] has the smaller mean error at rest on the test set: [\d.]+ mm against [\d.]+ mm/);
   assert.match(headline, /A is better in \d+ of 500 and B in \d+; /);
   assert.match(headline, /tested on the same cases, but the budget differs/);
   const names = await check_every_tab(page);

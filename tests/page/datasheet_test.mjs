@@ -1,6 +1,6 @@
 // The datasheet as a printer gets it: one page of A4, without scripts, nothing cut off at its side.
 import assert from 'node:assert/strict';
-import { rmSync } from 'node:fs';
+import { readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
@@ -13,11 +13,16 @@ before(async () => {
 });
 after(() => browser.close());
 
-async function expect_one_page(run) {
+async function open_datasheet(run) {
   const out = join(kFolder, 'datasheet');
   rmSync(out, { recursive: true, force: true });
   run_program('export', run, '--format', 'datasheet', '--out', out);
   const page = await browser.context.newPage();
+  return { page, out };
+}
+
+async function expect_one_page(run) {
+  const { page, out } = await open_datasheet(run);
   const requests = [];
   page.on('request', (request) => requests.push(request.url()));
   const url = pathToFileURL(join(out, 'datasheet.html')).href;
@@ -32,6 +37,28 @@ async function expect_one_page(run) {
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth));
   await page.close();
 }
+
+test('has the three errors, the whole workspace and speed, and the command that made it', async () => {
+  const run = join(kFolder, 'run');
+  const { page, out } = await open_datasheet(run);
+  await page.goto(pathToFileURL(join(out, 'datasheet.html')).href);
+  await page.emulateMedia({ media: 'print' });
+  const text = await page.locator('body').innerText();
+  const { test_motion: motion } = JSON.parse(readFileSync(join(run, 'result.json'), 'utf8')).winner;
+  const mm = (error_m) => String(Number((1000 * error_m).toPrecision(4)));
+  assert.match(text, /Errors at rest, mm/);
+  assert.ok(text.includes(`RMS ${mm(motion.error_while_moving_rms_m)} mm, peak ${mm(motion.error_while_moving_peak_m)} mm`), text);
+  assert.ok(text.includes(`up to ${mm(motion.error_after_start_up_m)} mm before the target's first rest`), text);
+  assert.match(text, /their integrals start empty, so gravity pulls the arm/);
+  assert.match(text, /To make it: \S*armwright optimize q1-complex --engine articulated --budget 1400/);
+  const cut = await page.$$eval('dd, p', (parts) =>
+    parts
+      .filter((part) => part.scrollHeight > part.clientHeight + 1 || part.scrollWidth > part.clientWidth + 1)
+      .map((part) => part.textContent),
+  );
+  assert.deepEqual(cut, []);
+  await page.close();
+});
 
 test('a PID fits on one page', () => expect_one_page(join(kFolder, 'run')));
 

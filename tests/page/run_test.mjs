@@ -56,7 +56,12 @@ test('the first screen of a run has its headlines and the health of the winner',
       .locator('.tile-' + part)
       .innerText();
   const mean_mm = (1000 * judged.case_errors.reduce((sum, error) => sum + error, 0)) / judged.case_errors.length;
-  const [, before, after] = /^([\d.]+) → ([\d.]+) mm$/.exec(await tile('Mean error'));
+  const { test_motion: motion } = result.winner;
+  const mm = (error_m) => (1000 * error_m).toPrecision(3);
+  assert.equal(await tile('Error while moving'), `RMS ${mm(motion.error_while_moving_rms_m)} mm`);
+  assert.match(await tile('Error while moving', 'detail'), new RegExp(`^peak ${mm(motion.error_while_moving_peak_m)} mm;`));
+  assert.equal(await tile('Error after start-up'), `up to ${mm(motion.error_after_start_up_m)} mm`);
+  const [, before, after] = /^([\d.]+) → ([\d.]+) mm$/.exec(await tile('Mean error at rest'));
   assert.equal(after, mean_mm.toPrecision(3));
   assert.ok(Number(before) > Number(after), `${before} before, ${after} after`);
   assert.match(await tile('Failed test cases'), new RegExp(` ${judged.failed_cases} of ${judged.case_errors.length}$`));

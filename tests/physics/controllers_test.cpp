@@ -107,8 +107,120 @@ TEST_P(UnderController, NeighboursDoNotMatter) {
   }
 }
 
+// Returns how far the tip of an arm whose target stands still moves within a second, with controllers
+// that start as the task says.
+double calc_sag_m(const PhysicsEngine& engine, TrackingTask task, ControlStart start,
+                  const ArmDesign& design) {
+  task.control_start = start;
+  const TrackingSetup setup(load_irb4600(), task);
+  TargetTable targets = setup.make_targets(make_case(5, 3));
+  for (std::size_t i = 0; i < targets.joint_positions.size(); ++i) {
+    targets.joint_positions[i] = targets.start_positions[i % targets.joints];
+  }
+  if (task.feed_forward != FeedForward::none) {
+    for (std::size_t i = 0; i < targets.feed_forward_effort.size(); ++i) {
+      targets.feed_forward_effort[i] = targets.feed_forward_effort[i % targets.joints];
+    }
+  }
+  const TrackingJob job = make_job(design, targets, kNever, {.motion = true});
+  const TrackingResult result = engine.simulate(setup, {&job, 1}).front();
+  EXPECT_EQ(result.status, SimulationStatus::ok) << result.reason;
+  const Eigen::Vector3d start_m = targets.segments.front().from_m;
+  double farthest_m = 0;
+  for (std::size_t k = 0; k < 100; ++k) {
+    farthest_m = std::max(farthest_m, (result.tips_m.at(k) - start_m).norm());
+  }
+  return farthest_m;
+}
+
+// The integral holds all of the effort, or what a share of it leaves. ODE's joints give by about
+// 1e-7 m, and single precision has 7 digits of a 3 m long arm; the rest is rounding.
+TEST_P(UnderController, HoldsTheArmFromTheFirstPeriodOn) {
+  TrackingTask task = make_task();
+  if (task.feed_forward == FeedForward::inverse_dynamics) {
+    task.feed_forward = FeedForward::gravity;  // the same while nothing moves
+  }
+  ArmDesign design = design_;
+  const auto gains = find_controller(GetParam()).gains;
+  for (std::size_t k = 0; k < gains.size(); ++k) {
+    for (JointDrive& joint : design.joints) {
+      joint.gains[k] = std::string_view(gains[k].name) == "share" ? 0.6 : joint.gains[k];
+    }
+  }
+  const bool has_hold = GetParam() != "neural";
+  for (const std::string& name : engine_names()) {
+    const auto engine = make_engine(name);
+    const double sag_m = calc_sag_m(*engine, task, ControlStart::empty, design);
+    EXPECT_GT(sag_m, 1e-3) << name;
+    const double held_m = calc_sag_m(*engine, task, ControlStart::gravity, design);
+    if (has_hold) {
+      EXPECT_LT(held_m, 1e-6) << name;
+    } else {
+      EXPECT_EQ(held_m, sag_m) << name;
+    }
+  }
+  const auto single = make_engine("articulated", {.precision = Precision::single, .simd = {}});
+  if (has_hold) {
+    EXPECT_LT(calc_sag_m(*single, task, ControlStart::gravity, design), 1e-5);
+  }
+}
+
+// Elsewhere the arm is simulated as with empty integrals, and lanes agree with a loop.
+TEST_P(UnderController, LanesHoldTheArmAsALoopDoes) {
+  TrackingTask task = make_task();
+  task.control_start = ControlStart::gravity;
+  const TrackingSetup setup(load_irb4600(), task);
+  const TargetTable targets = setup.make_targets(make_case(4, 8));
+  const TrackingJob job = make_job(design_, targets);
+  ArticulatedArm arm(setup.robot(), targets.start_positions, setup.task().physics);
+  const TrackingResult alone = TrackingLoop(setup, job).run(arm);
+  for (const std::string& level : supported_simd_names()) {
+    const TrackingResult lane =
+        make_engine("articulated", {.simd = parse_simd(level)})->simulate(setup, {&job, 1}).front();
+    for (std::size_t k = 0; k < alone.point_error_m.size(); ++k) {
+      EXPECT_NEAR(lane.point_error_m[k], alone.point_error_m[k], 1e-9) << level;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Table, UnderController, testing::ValuesIn(controller_names()),
                          [](const auto& test) { return test.param; });
+
+// An integral that its limits or its gain do not allow is as large as they allow.
+TEST(HoldingEffort, IsClampedAndNeedsAGain) {
+  const ControllerRow& row = find_controller("pid");
+  double states[2] = {7, 7};
+  const auto hold = [&](double effort, double gain) {
+    row.hold(effort, {-30, 20}, std::vector<double>{100, gain, 1}, states);
+    EXPECT_EQ(states[1], 0);
+    return states[0];
+  };
+  EXPECT_EQ(hold(10, 4), 2.5);
+  EXPECT_EQ(hold(50, 4), 5);
+  EXPECT_EQ(hold(-50, 4), -7.5);
+  EXPECT_EQ(hold(10, 0), 0);
+  const ControllerRow& second = find_controller("pi2d");
+  double three[3];
+  second.hold(10, {-30, 20}, std::vector<double>{100, 4, 5, 1}, three);
+  EXPECT_THAT(three, testing::ElementsAre(0, 0, 2));
+  second.hold(10, {-30, 20}, std::vector<double>{100, 4, 0, 1}, three);
+  EXPECT_THAT(three, testing::ElementsAre(2.5, 0, 0));
+}
+
+TEST(HoldingEffort, IsThatOfGravityAtTheStart) {
+  TrackingTask task = make_e6_task();
+  task.load_kg = 12;
+  task.feed_forward = FeedForward::gravity;
+  task.control_start = ControlStart::gravity;
+  const TrackingSetup setup(load_irb4600(), task);
+  const TargetTable targets = setup.make_targets(make_case(3, 4));
+  EXPECT_THAT(targets.holding_effort, testing::ElementsAreArray(targets.feed_forward(0)));
+  EXPECT_GT(std::abs(targets.holding_effort[1]), 100);
+  task.control_start = ControlStart::empty;
+  const TargetTable empty = TrackingSetup(load_irb4600(), task).make_targets(make_case(3, 4));
+  EXPECT_TRUE(empty.holding_effort.empty());
+  EXPECT_EQ(empty.feed_forward_effort, targets.feed_forward_effort);
+}
 
 // Without any feedback and with one step per period, the model's efforts take the model exactly to
 // its targets. On an arm without feedback, rounding errors grow by a few powers of ten over some

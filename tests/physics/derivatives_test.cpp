@@ -177,6 +177,7 @@ TEST_F(Derivatives, AreTheLimitsOfDifferencesForEveryController) {
   for (const ControllerRow& row : controller_table()) {
     TrackingTask task = make_e6_task();
     task.feed_forward = row.feed_forward;
+    task.control_start = ControlStart::gravity;
     const TrackingSetup setup(load_irb4600(), task);
     const TargetTable targets = setup.make_targets(make_case(7, 8));
     ArmDesign design = convert_design(kTableA1, row.name, task.control_period_s);

@@ -84,7 +84,7 @@ test('the headline names the better run, by how much, and what the cases decide'
   const runs = make_runs();
   const data = make_comparison({ runs });
   const read = () => find(data, 'headline').paragraphs;
-  assert.match(read()[0], /^B has the smaller mean error on the test set: [\d.]+ mm against [\d.]+ mm \(−50 %\)\.$/);
+  assert.match(read()[0], /^B has the smaller mean error at rest on the test set: [\d.]+ mm against [\d.]+ mm \(−50 %\)\.$/);
   assert.match(
     read()[1],
     /^Case by case, A is better in 40 of 500 and B in 450; by the ranks of the differences, B is better \(signed-rank test, p <1e-6\)\. /,
@@ -97,9 +97,9 @@ test('the headline names the better run, by how much, and what the cases decide'
   runs.paired.cases = 5;
   assert.match(read()[1], /not enough cases to decide; at least 6 are needed\. /);
   [runs.a, runs.b] = [runs.b, runs.a];
-  assert.match(read()[0], /^A has the smaller mean error/);
+  assert.match(read()[0], /^A has the smaller mean error at rest/);
   runs.b.headline.value = runs.a.headline.value;
-  assert.match(read()[0], /^A and B have the same mean error/);
+  assert.match(read()[0], /^A and B have the same mean error at rest/);
   runs.b.headline.value = null;
   assert.match(read()[0], /^B has no result on the test set, so/);
   runs.b.finished = false;

@@ -341,24 +341,41 @@ test('the tiles have the result of the run and its effort', () => {
   const data = make_run_data();
   assert.deepEqual(
     find(data, 'tiles').tiles.map((tile) => `${tile.label}: ${tile.value}`),
-    ['Mean error: 50 → 6.10 mm', 'Failed test cases: ✓ 0 of 500', 'Total torque: 930000 N m', 'Simulations: 2800', 'Time taken: 2 min 5 s'],
+    [
+      ...['Mean error at rest: 50 → 6.10 mm', 'Error while moving: RMS 0.850 mm', 'Error after start-up: up to 112 mm'],
+      ...['Failed test cases: ✓ 0 of 500', 'Total torque: 930000 N m', 'Simulations: 2800', 'Time taken: 2 min 5 s'],
+    ],
   );
   assert.equal(get_tile(data, 'Time taken').detail, '4 min 0 s of processor time; in 2 parts; started 2026-01-31, 12:34 UTC');
   data.headline.times = { wall_s: 3, cpu_s: null, lives: 1 };
   assert.equal(get_tile(data, 'Time taken').detail, 'processor time unknown; started 2026-01-31, 12:34 UTC');
   data.headline.times = null;
   assert.equal(get_tile(data, 'Started').value, '2026-01-31');
-  const error = get_tile(data, 'Mean error');
+  assert.equal(get_tile(data, 'Error while moving').detail, 'peak 5.30 mm; distance to the moving target');
+  const error = get_tile(data, 'Mean error at rest');
   assert.equal(error.detail, 'better by a factor of 8.20: base controllers → winner, on 500 cases of test/2');
   data.headline.value = 0.1;
-  assert.match(get_tile(data, 'Mean error').detail, /^worse by a factor of 2: /);
+  assert.match(get_tile(data, 'Mean error at rest').detail, /^worse by a factor of 2: /);
   data.headline.value = 0.05001;
-  assert.match(get_tile(data, 'Mean error').detail, /^unchanged: /);
+  assert.match(get_tile(data, 'Mean error at rest').detail, /^unchanged: /);
   data.headline.failures = 3;
   assert.deepEqual(
     { ...get_tile(data, 'Failed test cases'), detail: '' },
     { label: 'Failed test cases', value: '✗ 3 of 500', detail: '', mark: 'bad' },
   );
+});
+
+test('an arm that slides has a total force, and an old result no errors in motion', () => {
+  const data = make_run_data();
+  data.headline.total_force_n = 400;
+  data.headline.motion.error_after_start_up_m = null; // a continuous path
+  const list = () => find(data, 'tiles').tiles.map((tile) => `${tile.label}: ${tile.value}`);
+  assert.deepEqual(list().slice(1, 5), [
+    ...['Error while moving: RMS 0.850 mm', 'Failed test cases: ✓ 0 of 500', 'Total torque: 930000 N m', 'Total force: 400 N'],
+  ]);
+  data.headline.total_torque_n_m = null;
+  data.headline.motion = null;
+  assert.deepEqual(list().slice(1, 3), ['Failed test cases: ✓ 0 of 500', 'Total force: 400 N']);
 });
 
 test('tiles without a record are left out', () => {
@@ -372,6 +389,7 @@ test('tiles without a record are left out', () => {
     failures: null,
     test_cases: null,
     total_torque_n_m: null,
+    motion: null,
     times: null,
   };
   const list = () => find(data, 'tiles').tiles.map((tile) => `${tile.label}: ${tile.value}`);

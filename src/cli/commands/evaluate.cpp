@@ -24,6 +24,7 @@
 #include "problems/config/path_survey.hpp"
 #include "problems/user/user_problem.hpp"
 #include "study/run/derived_files.hpp"
+#include "study/run/json_values.hpp"
 
 namespace armwright {
 namespace {
@@ -38,9 +39,12 @@ constexpr const char* kEvaluateExamples = R"(Examples:
   armwright evaluate table-a5 --problem q1-complex --trajectory arm.csv --trajectory-case 7
 
 Terms: a test case is a sequence of points that the target visits, in the frame of the robot's base. The error of a
-point is the largest distance between tip and target while the target rests there. The error of a case is the mean over
-its points. A failure is a case with an error above 100 mm or without a number (the simulation diverged, or a target is
-out of reach). The total torque is the sum of the joints' effort limits. If the problem has requirements
+point is the largest distance between tip and target while the target rests there. The error of a case, the error at
+rest, is the mean over its points. The error while moving is the root mean square (RMS) of the distance between tip and
+moving target over all moves that count, and its peak. The error after start-up is the largest distance before the
+target's first rest has ended. A failure is a case with an error above 100 mm or without a number (the simulation
+diverged, or a target is out of reach). The total torque is the sum of the effort limits of the joints that turn, the
+total force that of the joints that slide. If the problem has requirements
 (docs/requirements.md), each is judged by its worst case. The exit code is 3 if a case has no number, or if a
 requirement with use = "constraint" is missed.)";
 
@@ -84,7 +88,7 @@ std::string format_json(const EvaluatedDesign& evaluated) {
     cases.push_back(std::move(one));
   }
   const DesignEvaluation& evaluation = evaluated.evaluation;
-  const json summary = {
+  json summary = {
       {"design", sanitize(evaluated.design.name)},
       {"problem", sanitize(evaluated.problem.name)},
       {"test_set", sanitize(evaluated.cases.set.name())},
@@ -95,9 +99,10 @@ std::string format_json(const EvaluatedDesign& evaluated) {
       {"worst_error_m", to_json_value(evaluation.summary.worst)},
       {"failures", evaluation.summary.failures},
       {"without_number", evaluation.summary.without_number},
-      {"total_torque_n_m", evaluation.total_torque_n_m},
+      {"total_torque_n_m", to_json_value(evaluation.efforts.torque_n_m)},
       {"mean_energy_j", to_json_value(evaluation.mean_energy_j)},
   };
+  add_motion(evaluation.motion, evaluation.efforts, summary);
   json all = {{"cases", cases}, {"summary", summary}};
   if (!evaluated.requirements.empty()) {
     all["requirements"] = requirements_to_json(evaluated.requirements);
@@ -180,8 +185,8 @@ std::string format_text(const EvaluatedDesign& evaluated, const Style& style) {
                              sanitize(evaluated.problem.name), format_count(summary.cases, "case"),
                              sanitize(evaluated.cases.set.name())));
   text += "\n\n";
-  Table table = make_summary_table(summary);
-  table.add_row({"total torque", format_quantity(evaluation.total_torque_n_m, "N m")});
+  Table table = make_summary_table(summary, evaluation.motion);
+  add_efforts(evaluation.efforts, table);
   table.add_row({"mean energy",
                  evaluation.mean_energy_j ? format_quantity(*evaluation.mean_energy_j, "J") : "-"});
   text += table.format(style, 2) + "\n";

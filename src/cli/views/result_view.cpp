@@ -102,15 +102,17 @@ void add_target(const RunResult& result, Table& table) {
 }
 
 std::string format_tracking_test(const RunResult& result, const Style& style) {
-  Table table = make_summary_table(result.test_summary);
-  if (const auto torque = get_metric(result, "total_torque")) {
-    table.add_row({"total torque", format_quantity(*torque, "N m")});
-  }
+  Table table = make_summary_table(result.test_summary, result.test_motion);
+  add_efforts(get_effort_totals(result), table);
   if (const auto energy = get_metric(result, "energy")) {
     table.add_row({"mean energy", format_quantity(*energy, "J")});
   }
-  const bool is_shown = get_target(result).unit == "m" || get_target(result).name == "total torque";
-  if (!is_shown && !result.test.objectives.empty()) {
+  const Quantity target = get_target(result);
+  const bool is_torque = target.name == "total torque";
+  if (is_torque && result.sliding_efforts.force_n) {
+    // The objective adds the efforts of all joints, in N m and N.
+    table.add_row({"sum of both", format_quantity(calc_target(result, result.test), "1")});
+  } else if (target.unit != "m" && !is_torque && !result.test.objectives.empty()) {
     add_target(result, table);
   }
   return style.bold(fmt::format("On the test set {}", sanitize(result.test_set))) + "\n" +
@@ -348,18 +350,36 @@ std::string describe_judged(const RunResult& result, const Style& style) {
   return style.bold("Judged on the validation set") + "\n" + table.format(style, 2);
 }
 
-Table make_summary_table(const ErrorSummary& summary) {
+Table make_summary_table(const ErrorSummary& summary, const std::optional<MotionSummary>& motion) {
   const auto mm = [](std::optional<double> error_m) {
     return error_m ? format_mm(error_m) + " mm" : "-";
   };
   Table table({{"", false}, {"", false}});
-  table.add_row({"mean error", mm(summary.mean)});
+  // On a continuous path the target does not rest.
+  const bool rests = motion && motion->start_up_m;
+  table.add_row({rests ? "mean error at rest" : "mean error", mm(summary.mean)});
   table.add_row({"median", mm(summary.median)});
   table.add_row({"95 % below", mm(summary.percentile_95)});
   table.add_row({"worst", mm(summary.worst)});
   table.add_row({"failures", fmt::format("{} of {} ({} without a number)", summary.failures,
                                          summary.cases, summary.without_number)});
+  if (motion) {
+    table.add_row({"error while moving", fmt::format("RMS {}, peak {}", mm(motion->moving_rms_m),
+                                                     mm(motion->moving_peak_m))});
+  }
+  if (rests) {
+    table.add_row({"error after start-up", "up to " + mm(motion->start_up_m)});
+  }
   return table;
+}
+
+void add_efforts(const EffortTotals& efforts, Table& table) {
+  if (efforts.torque_n_m) {
+    table.add_row({"total torque", format_quantity(*efforts.torque_n_m, "N m")});
+  }
+  if (efforts.force_n) {
+    table.add_row({"total force", format_quantity(*efforts.force_n, "N")});
+  }
 }
 
 int get_result_code(const RunResult& result) {

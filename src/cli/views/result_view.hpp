@@ -26,9 +26,11 @@ std::string describe_unused(const RunResult& result);
 // Returns a table of a design's gains and effort limits, one row per joint.
 std::string format_design(const DesignFile& design, const Style& style);
 
-// Returns a table with one row each for mean, median, 95th percentile, worst and failures. The
-// caller may add rows.
-Table make_summary_table(const ErrorSummary& summary);
+// Returns a table with one row each for mean, median, 95th percentile, worst and failures, and for
+// the errors in motion if they were measured. The caller may add rows.
+Table make_summary_table(const ErrorSummary& summary, const std::optional<MotionSummary>& motion);
+// Adds rows for the total torque and the total force, as far as the arm has them.
+void add_efforts(const EffortTotals& efforts, Table& table);
 
 // Returns the exit code of a finished run. It is kFailed if the optimizer failed, if the run found
 // nothing feasible, or if the winner has cases without a number.

@@ -166,11 +166,6 @@ std::optional<TestCase> read_path(const ConfigTable& table, const TrackingTask& 
       table.refuse(kPathKind, fmt::format("point {} {}", fault->point, fault->what));
     }
   }
-  if (!path.turns.empty() && task.tool.orientation == ToolOrientation::free) {
-    table.refuse(kPathKind,
-                 "the path says how the tool is turned, which does not count where "
-                 "task.orientation is \"free\"; set it to \"pose\" or \"pointing\"");
-  }
   return path;
 }
 

@@ -97,6 +97,11 @@ LoadedProblem load_problem(std::string_view name_or_path,
 // its file is not valid, Error{io} if the file cannot be read.
 bool needs_program(std::string_view name_or_path, std::span<const std::string> overrides);
 
+// Returns the settings with which a problem keeps what version 1.0 proposed for its robot: workspace,
+// speed, control period and start, as the run or study recorded them. Empty if it proposed nothing,
+// or if a later version made the record.
+std::vector<std::string> list_first_proposal(const nlohmann::json& recorded);
+
 // Loads the problem that a run recorded as LoadedProblem::resolved_json, also of a replicate
 // (make_replicate). It does not read the problem's file and starts no program. Files that the configuration names by a
 // relative path are looked for in `beside` first; the caller must compare input_hashes to see

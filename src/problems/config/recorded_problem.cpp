@@ -63,6 +63,44 @@ void add_old_values(nlohmann::json& resolved) {
 
 }  // namespace
 
+std::vector<std::string> list_first_proposal(const nlohmann::json& recorded) {
+  std::vector<std::string> settings;
+  const auto find = [&](const std::string& pointer) -> const nlohmann::json* {
+    const nlohmann::json::json_pointer place(pointer);
+    return recorded.contains(place) ? &recorded.at(place) : nullptr;
+  };
+  const nlohmann::json* const proposes = find("/robot/propose");
+  const nlohmann::json* const start = find("/variables/start");
+  const bool is_first = start != nullptr && *start == kProposedStart &&
+                        find("/variables/start_bandwidth_rad_per_s") == nullptr;
+  if (is_first) {
+    settings.push_back(
+        fmt::format("variables.start_bandwidth_rad_per_s={}", kStartOfVersion1));
+  }
+  if (proposes == nullptr || *proposes != true || (start != nullptr && !is_first)) {
+    return settings;
+  }
+  for (const auto& [table, keys] :
+       {std::pair{"task", std::vector{"orientation", "tool_rpy_rad", "home", "distance_limit_m",
+                                      "speed_m_per_s"}},
+        std::pair{"workspace", std::vector{"centre_m", "radius_m", "shortest_move_m", "normal"}},
+        std::pair{"control", std::vector{"period_s"}}}) {
+    for (const char* key : keys) {
+      if (const auto* value = find(fmt::format("/{}/{}", table, key))) {
+        settings.push_back(fmt::format("{}.{}={}", table, key, write_toml(*value)));
+      }
+    }
+  }
+  if (find("/control/period_s") == nullptr) {
+    settings.push_back(fmt::format("control.period_s={}", *kControlPeriod.fallback));
+  }
+  const nlohmann::json* const substeps = find("/physics/substeps");
+  settings.push_back(fmt::format("physics.substeps={}", substeps == nullptr
+                                                            ? "1"
+                                                            : write_toml(*substeps)));
+  return settings;
+}
+
 LoadedProblem load_recorded_problem(const std::string& resolved_json, const std::string& name,
                                     const std::filesystem::path& beside) {
   const ReadStep step(fmt::format("the recorded problem {}", sanitize(name)));

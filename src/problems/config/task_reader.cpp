@@ -14,7 +14,7 @@ namespace armwright {
 const Setting<std::string> kTaskOrientation{
     "orientation", tool_orientation_names, "free",
     "which part of the tool's orientation counts beside its position: none, the direction of its "
-    "axis, or the whole pose"};
+    "axis, or the whole pose (default: free; with a [path] that turns the tool pose)"};
 const Setting<bool> kTaskCountFirstPoint{
     "count_first_point", TrackingTask{}.count_first_point,
     "whether the first move, which starts from rest, counts (default: false; with a [path] true)"};
@@ -120,6 +120,13 @@ const Setting<double> kTaskOrientationArm{
     ToolTask{}.arm_m,
     "position error that an orientation error of 1 rad counts as"};
 
+const Setting<std::string> kControlStart{"start", control_start_names, "empty",
+                                         "what the controllers' integrals hold when they are "
+                                         "enabled; empty: nothing, so that the arm sags "
+                                         "until they have filled, as in version 1.0; gravity: the "
+                                         "nominal arm with its load in the first "
+                                         "posture of each case (the problem robot has gravity)"};
+
 const Setting<int> kWorkspacePoints{"points",
                                     {.lower = 3, .upper = 1000},
                                     WorkspaceSphere{}.points,
@@ -185,8 +192,8 @@ const SettingTable kTaskSettings{
                  &kTaskLoadInertia, &kTaskKinematics, &kTaskSolver, &kTaskLimits, &kTaskFloor,
                  &kTaskOrientation, &kTaskToolRpy, &kTaskToolAxis, &kTaskOrientationArm,
                  &kTaskHome}};
-const SettingTable kControlSettings{.key = "control",
-                                    .settings = {&kControlPeriod, &kControlController}};
+const SettingTable kControlSettings{
+    .key = "control", .settings = {&kControlPeriod, &kControlController, &kControlStart}};
 const SettingTable kWorkspaceSettings{
     .key = "workspace",
     .settings = {&kWorkspaceCentre, &kWorkspaceRadius, &kWorkspaceNormal, &kWorkspaceShortestMove,
@@ -236,6 +243,10 @@ TrackingTask read_task(const ConfigTable& table, const ConfigTable& control) {
                  "task.orientation to \"free\" or kinematics to \"numeric\"");
   }
   task.control_period_s = control.get(kControlPeriod);
+  task.control_start = static_cast<ControlStart>(control.get_choice(kControlStart));
+  if (task.control_start == ControlStart::empty) {
+    control.leave_out(kControlStart);  // so recorded version 1.0
+  }
   return task;
 }
 

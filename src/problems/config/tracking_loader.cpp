@@ -172,6 +172,42 @@ void check_elasticity(const ConfigTable& physics, const TrackingConfig& config,
           mode->rate_rad_per_s * step_s, step_s, kMostTurnPerStep_rad, advice));
 }
 
+// Makes the tool's orientation count where the path says how the tool is turned and the file leaves
+// that open.
+void apply_turns(const ConfigTable& table, TrackingConfig& config) {
+  const ConfigTable task = table.get_table_or_empty(kTaskSettings);
+  if (task.has(kTaskOrientation)) {
+    return;
+  }
+  if (config.task.kinematics == KinematicsChoice::palletiser) {
+    task.refuse("kinematics",
+                "the path says how the tool is turned, and the closed form of a palletiser says "
+                "nothing of that; set it to \"numeric\", or leave the turns out of the path");
+  }
+  config.task.tool.orientation = ToolOrientation::pose;
+  task.settle(kTaskOrientation,
+              tool_orientation_names()[static_cast<std::size_t>(config.task.tool.orientation)]);
+}
+
+// Refuses a path that says how the tool is turned if that does not count.
+void check_turns(const ConfigTable& table, const TrackingConfig& config) {
+  if (!config.path || config.path->turns.empty() ||
+      config.task.tool.orientation != ToolOrientation::free) {
+    return;
+  }
+  const bool is_said = table.get_table_or_empty(kTaskSettings).has(kTaskOrientation);
+  table.get_table_or_empty(kPathSettings)
+      .refuse("kind",
+              is_said
+                  ? "the path says how the tool is turned, which does not count where "
+                    "task.orientation is \"free\"; set that to \"pose\" or \"pointing\", or "
+                    "leave it out"
+                  : fmt::format("the path says how the tool is turned, but the {} joints of the "
+                                "arm cannot turn it as they move it; leave the turns out of "
+                                "the path",
+                                config.robot.joint_count()));
+}
+
 // Reads the path, if there is one, and proposes what is left out.
 void read_path_and_proposal(const ConfigTable& table, TrackingConfig& config,
                             LoadedProblem& loaded) {
@@ -183,7 +219,10 @@ void read_path_and_proposal(const ConfigTable& table, TrackingConfig& config,
   }
   if (table.get_table(kRobotSettings).get(kRobotPropose)) {
     apply_proposal(table, config);
+  } else if (config.path && !config.path->turns.empty()) {
+    apply_turns(table, config);
   }
+  check_turns(table, config);
 }
 
 // Returns the plant's file, and settles its name. Empty: there is none.

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "sim/tracking/response.hpp"
 
 namespace armwright {
 namespace {
@@ -86,6 +85,11 @@ MeasuredCase measure(const TrackingSetup& setup, const TrackingJob& job, Trackin
   for (const Requirement& requirement : requirements) {
     measured.required.push_back(
         measure_one(requirement, job.choose_setup(setup), *job.targets, result));
+  }
+  // As find_tip_move(): what was not recorded to its end is not measured.
+  if (result.status == SimulationStatus::ok &&
+      result.error_series_m.size() == static_cast<std::size_t>(job.targets->steps)) {
+    measured.motion = measure_motion(setup.task(), *job.targets, result.error_series_m);
   }
   if (!job.recording.motion) {
     result.tips_m = {};

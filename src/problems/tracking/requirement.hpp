@@ -26,6 +26,7 @@
 #include "problems/interface/problem.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/tracking/physics_engine.hpp"
+#include "sim/tracking/response.hpp"
 
 namespace armwright {
 
@@ -89,10 +90,11 @@ struct RequiredValue {
   std::optional<std::size_t> point;  // the point with this value; 1 is the first after the start
 };
 
-// A simulated case and the values of all required quantities.
+// A simulated case and what was measured on it.
 struct MeasuredCase {
   TrackingResult result;                // without the motion, unless its job asked for it
   std::vector<RequiredValue> required;  // one per requirement
+  MotionErrors motion = {};             // if the job recorded its errors and came to its end
 };
 
 // Simulates the jobs and measures the requirements. Returns one result per job, whatever its

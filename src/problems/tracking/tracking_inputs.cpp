@@ -54,10 +54,12 @@ std::shared_ptr<const TrackingSetup> TrackingInputs::get_setup(const ArmDesign& 
   return std::make_shared<TrackingSetup>(make_robot(design), make_task(design));
 }
 
-// The mass of motors does not change the targets, but it changes the feed-forward efforts.
+// The mass of motors does not change the targets, but it changes the efforts in their table.
 bool TrackingInputs::has_own_targets(const ArmDesign& design) const {
   return is_stretched(design) || design.speed_m_per_s ||
-         (config_.torque_per_mass_n_m_per_kg > 0 && config_.task.feed_forward != FeedForward::none);
+         (config_.torque_per_mass_n_m_per_kg > 0 &&
+          (config_.task.feed_forward != FeedForward::none ||
+           config_.task.control_start != ControlStart::empty));
 }
 
 void TrackingInputs::check_points(const TargetTable& table, const TestSet& set,

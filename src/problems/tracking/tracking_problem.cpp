@@ -332,8 +332,14 @@ std::vector<TrackingResult> TrackingProblem::track(const ArmDesign& design, cons
 }
 
 std::vector<MeasuredCase> TrackingProblem::measure(const ArmDesign& design, const TestSet& set,
-                                                   std::uint64_t first, std::size_t count) const {
-  return simulate_judged(design, set, first, count, {}, config_.requirements);
+                                                   std::uint64_t first, std::size_t count,
+                                                   bool motion) const {
+  auto cases =
+      simulate_judged(design, set, first, count, {.error_series = motion}, config_.requirements);
+  for (MeasuredCase& one : cases) {
+    one.result.error_series_m = {};
+  }
+  return cases;
 }
 
 std::vector<MeasuredCase> TrackingProblem::simulate_judged(

@@ -92,9 +92,11 @@ class TrackingProblem final : public Problem {
   std::vector<TrackingResult> track(const ArmDesign& design, const TestSet& set,
                                     std::uint64_t first, std::size_t count,
                                     RecordingOptions recording) const;
-  // Simulates them likewise and measures the problem's requirements.
+  // Simulates them likewise and measures the problem's requirements and, with `motion`, the errors
+  // of the motion.
   std::vector<MeasuredCase> measure(const ArmDesign& design, const TestSet& set,
-                                    std::uint64_t first, std::size_t count) const;
+                                    std::uint64_t first, std::size_t count,
+                                    bool motion = false) const;
 
   // Return the arm of a design without its load, its task, and the setup of both. They are the
   // problem's own if the design changes neither.

@@ -65,9 +65,18 @@ std::string describe_points(const TrackingConfig& config) {
 std::string describe_workspace(const TrackingConfig& config) {
   const WorkspaceSphere& sphere = config.workspace;
   return config.path ? ""
-                     : fmt::format("{} of {:.4g} m about ({:.4g}, {:.4g}, {:.4g}) m",
+                     : fmt::format("{} of radius {:.4g} m about ({:.4g}, {:.4g}, {:.4g}) m",
                                    sphere.normal ? "disc" : "sphere", sphere.radius_m,
                                    sphere.centre_m.x(), sphere.centre_m.y(), sphere.centre_m.z());
+}
+
+// A path that is sampled has its speeds in its samples.
+std::string describe_target(const TrackingConfig& config, const TrackingTask& task) {
+  const std::string signal = signal_names()[static_cast<std::size_t>(task.signal)];
+  return config.path && config.path->continuous
+             ? "moves along its samples"
+             : fmt::format("{} moves at {:.4g} m/s, below {:.4g} m slower", signal,
+                           task.speed_m_per_s, task.distance_limit_m);
 }
 
 std::string make_task_facts(const FinishedArm& arm) {
@@ -75,9 +84,7 @@ std::string make_task_facts(const FinishedArm& arm) {
   const TrackingTask task = arm.run.tracking()->make_task(arm.design);
   const SheetFacts facts = {
       {"Problem", sanitize(arm.result().problem)},
-      {"Target",
-       fmt::format("{} moves at {:.4g} m/s", signal_names()[static_cast<std::size_t>(task.signal)],
-                   task.speed_m_per_s)},
+      {"Target", describe_target(config, task)},
       {"Rest", fmt::format("{:.4g} s after each move", task.rest_s)},
       {"Points", describe_points(config)},
       {"Workspace", describe_workspace(config)},
@@ -132,11 +139,66 @@ std::string format_metric(const RunResult& result, const Evaluation& evaluation,
   return value ? fmt::format("{:.6g}", *value) : kUnknown;
 }
 
+// Returns why the arm sags when its controllers are enabled and what to do about it, or what holds it.
+std::string explain_start(const FinishedArm& arm) {
+  const FeedForward ahead = find_controller(arm.design.controller).feed_forward;
+  if (ahead != FeedForward::none) {
+    return "The controllers add the efforts that hold the arm from the first period on.";
+  }
+  if (arm.starts_held()) {
+    return "The controllers start with integrals that hold the arm against gravity "
+           "(control.start); one that starts empty sags further when it is enabled.";
+  }
+  return "It is the sag when the controllers are enabled: their integrals start empty, so gravity "
+         "pulls the arm until they have filled. control.start = \"gravity\" or pid_gravity hold "
+         "it.";
+}
+
+std::string list_totals(const EffortTotals& efforts) {
+  std::vector<std::string> totals;
+  if (efforts.torque_n_m) {
+    totals.push_back(fmt::format("total torque {:.6g} N m", *efforts.torque_n_m));
+  }
+  if (efforts.force_n) {
+    totals.push_back(fmt::format("total force {:.6g} N", *efforts.force_n));
+  }
+  return join(totals, ", ");
+}
+
+// Returns an empty text if the run did not measure its winner's motion.
+std::string describe_motion(const FinishedArm& arm) {
+  const auto& motion = arm.result().test_motion;
+  if (!motion) {
+    return "";
+  }
+  std::string html = fmt::format(
+      "<p><strong>Error while moving</strong>: RMS {} mm, peak {} mm, the distance from the moving "
+      "target on "
+      "the moves of all test cases.</p>\n",
+      format_mm(motion->moving_rms_m), format_mm(motion->moving_peak_m));
+  if (motion->start_up_m) {
+    html += fmt::format(
+        "<p><strong>Error after start-up</strong>: up to {} mm before the target's first rest has "
+        "ended. "
+        "{}</p>\n",
+        format_mm(motion->start_up_m), escape_html(explain_start(arm)));
+  }
+  return html;
+}
+
 std::string make_results(const FinishedArm& arm) {
   const RunResult& result = arm.result();
-  const std::vector<std::string> heads = {"Errors in mm", "cases",    "mean",     "median",
-                                          "95 %",         "worst",    "failures", "no number",
-                                          "energy J",     "clamped %"};
+  const bool continuous = arm.config().path && arm.config().path->continuous;
+  const std::vector<std::string> heads = {continuous ? "Errors in mm" : "Errors at rest, mm",
+                                          "cases",
+                                          "mean",
+                                          "median",
+                                          "95 %",
+                                          "worst",
+                                          "failures",
+                                          "no number",
+                                          "energy J",
+                                          "clamped %"};
   std::vector<std::vector<HtmlCell>> rows;
   const auto add = [&](const std::string& name, const Evaluation& evaluation) {
     const ErrorSummary summary = summarize(evaluation.case_errors, get_failure_error(result));
@@ -156,14 +218,16 @@ std::string make_results(const FinishedArm& arm) {
   add("validation: " + sanitize(arm.run.problem->sets.validation), arm.winner().validation);
   std::string html = make_table(heads, rows);
   html += fmt::format(
-      "<p>95 % of the cases are below the error named so; one fails with an error above {:.4g} mm "
-      "or without a number. Energy is the positive "
-      "work of all joints, clamped the share of control periods that ask for more effort than the "
-      "limits allow: means over the cases. Total torque, the sum of each joint's larger limit: "
-      "{:.6g} {}.</p>\n",
-      kMillimetresPerMetre * get_failure_error(result), calc_total_effort(arm.design),
-      escape_html(list_units(arm.config().robot, "N m")));
-  return html;
+      "<p>{} 95 %: of the cases are below it. A failure has an error above {:.4g} mm or no number. "
+      "Means over the cases: energy, the positive work of all joints; clamped, the share of "
+      "control "
+      "periods that ask for more than the limits allow. Each joint's larger limit summed: "
+      "{}.</p>\n",
+      continuous ? "Mean over the samples of a path."
+                 : "Largest distance while the target rests at a point, mean over a case's points.",
+      kMillimetresPerMetre * get_failure_error(result),
+      list_totals(calc_effort_totals(arm.design, arm.config().robot)));
+  return html + describe_motion(arm);
 }
 
 // ---- Requirements ------------------------------------------------------------------------------
@@ -265,9 +329,13 @@ std::string make_origin(const FinishedArm& arm) {
     html += fmt::format("<p class=\"clamped\">{}: SHA-256 {}</p>\n", escape_html(sanitize(file)),
                         escape_html(sanitize(hash.get<std::string>())));
   }
+  if (!arm.run.command_line.empty()) {
+    html += fmt::format("<p class=\"command\">To make it: {}</p>\n",
+                        escape_html(sanitize(arm.run.make_begin_command())));
+  }
   const std::string command = arm.run.make_evaluate_command("winner.toml", {});
   if (!command.empty()) {
-    html += fmt::format("<p class=\"clamped\">To simulate it again: {}</p>\n",
+    html += fmt::format("<p class=\"command\">To simulate it again: {}</p>\n",
                         escape_html(sanitize(command)));
   }
   return html + "</div>\n";

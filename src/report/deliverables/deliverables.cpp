@@ -47,14 +47,21 @@ void refuse_study(const fs::path& folder, std::string_view format) {
 std::vector<std::string> describe_origin(const FinishedArm& arm) {
   const TrackingConfig& config = arm.config();
   const ErrorSummary& test = arm.result().test_summary;
+  const bool rests = !config.path || !config.path->continuous;
   std::vector<std::string> lines = {
       fmt::format("Written by armwright {} for the robot {}: {}, a run of {}.", get_version(),
                   sanitize(config.robot.name), arm.describe(), sanitize(arm.run.started)),
       fmt::format("Simulated on {} ({} cases): {}, {} failed.", sanitize(arm.result().test_set),
                   test.cases,
-                  test.mean ? fmt::format("mean error {:.4g} mm", kMillimetresPerMetre * *test.mean)
+                  test.mean ? fmt::format("mean error {}{:.4g} mm", rests ? "at rest " : "",
+                                          kMillimetresPerMetre * *test.mean)
                             : "no mean",
                   test.failures)};
+  if (arm.starts_held()) {
+    lines.emplace_back(
+        "The simulated controllers started with integrals that hold the arm against gravity. One "
+        "that starts empty sags when it is enabled.");
+  }
   if (config.task.load_kg > 0) {
     lines.push_back(fmt::format(
         "The arm carried a load of {:.6g} kg, which its URDF does not have.", config.task.load_kg));
@@ -120,6 +127,18 @@ std::string FinishedArm::describe() const {
   return fmt::format("the winner of {} (seed {}) on {}",
                      sanitize(shorten_optimizer(result().optimizer)), result().seed,
                      sanitize(result().problem));
+}
+
+bool FinishedArm::starts_held() const {
+  const ControllerRow& controller = find_controller(design.controller);
+  std::vector<double> states(static_cast<std::size_t>(controller.states));
+  const auto holds = [&](const JointDrive& joint) {
+    constexpr double kSomeEffort = 1;
+    controller.hold(kSomeEffort, {-kSomeEffort, kSomeEffort}, joint.gains, states.data());
+    return std::ranges::any_of(states, [](double state) { return state != 0; });
+  };
+  return config().task.control_start == ControlStart::gravity &&
+         std::ranges::all_of(design.joints, holds);
 }
 
 FinishedArm load_finished_arm(const fs::path& folder, std::string_view format) {

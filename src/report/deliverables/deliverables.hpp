@@ -20,6 +20,9 @@ struct FinishedArm {
   const JudgedCandidate& winner() const { return result().judged[*result().winner]; }
   // Returns "the winner of ga (seed 1) on q1-complex" without control characters.
   std::string describe() const;
+  // Returns whether integrals hold the arm against gravity from the first control period on: the task
+  // wants it, and the controllers' law and gains allow it.
+  bool starts_held() const;
 };
 
 // Throws Error{usage} for a study, for a run of an analytic function, and for a run that has not

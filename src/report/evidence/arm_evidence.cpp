@@ -91,13 +91,14 @@ json make_parameters(const RecordedRun& run, const std::vector<ShownDesign>& des
   return list;
 }
 
-json make_result_rows(const std::vector<ShownDesign>& designs) {
+json make_result_rows(const RobotModel& robot, const std::vector<ShownDesign>& designs) {
   json rows = json::array();
   for (const ShownDesign& design : designs) {
     if (design.results.empty()) {
       continue;
     }
     const ErrorSummary summary = summarize_cases(design.results);
+    const EffortTotals efforts = calc_effort_totals(design.named.design, robot);
     rows.push_back({{"design", design.named.id},
                     {"source", design.source},
                     {"mean_m", finite_or_null(summary.mean)},
@@ -106,7 +107,8 @@ json make_result_rows(const std::vector<ShownDesign>& designs) {
                     {"worst_m", finite_or_null(summary.worst)},
                     {"failures", summary.failures},
                     {"cases", summary.cases},
-                    {"total_torque_n_m", calc_total_effort(design.named.design)},
+                    {"total_torque_n_m", finite_or_null(efforts.torque_n_m)},
+                    {"total_force_n", finite_or_null(efforts.force_n)},
                     {"published_mean_m", finite_or_null(design.published_mean_m)},
                     {"published_torque_n_m", finite_or_null(design.published_torque_n_m)},
                     {"where", design.where}});
@@ -179,9 +181,11 @@ json make_test_errors(const RecordedRun& run, const std::vector<ShownDesign>& de
 
 json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                        PageSimulator* simulator, std::vector<std::string>& notes) {
+  const TrackingProblem& tracking = *run.tracking();
+  const RobotModel& robot = tracking.config().robot;
   json list = json::array();
   for (const ShownDesign& design : designs) {
-    list.push_back(make_design_info(design.named));
+    list.push_back(make_design_info(design.named, robot));
   }
   json sweep = nullptr;
   json health = nullptr;
@@ -190,12 +194,14 @@ json make_arm_evidence(const RecordedRun& run, const std::vector<ShownDesign>& d
     sweep = make_speed_sweep(run, designs, *simulator, notes);
   }
   // The signals have the winner's own speed, if it has one.
-  const TrackingProblem& tracking = *run.tracking();
   const TrackingTask task =
       designs.empty() ? tracking.config().task : tracking.make_task(designs.front().named.design);
-  return {{"designs", std::move(list)},           {"parameters", make_parameters(run, designs)},
-          {"results", make_result_rows(designs)}, {"response", make_response(run, designs)},
-          {"signals", make_signals(task, true)},  {"sweep", std::move(sweep)},
+  return {{"designs", std::move(list)},
+          {"parameters", make_parameters(run, designs)},
+          {"results", make_result_rows(robot, designs)},
+          {"response", make_response(run, designs)},
+          {"signals", make_signals(task, true)},
+          {"sweep", std::move(sweep)},
           {"health", std::move(health)}};
 }
 

@@ -153,14 +153,16 @@ std::size_t find_worst_case(std::span<const double> errors) {
   return static_cast<std::size_t>(worst - errors.begin());
 }
 
-json make_design_info(const NamedDesign& design) {
+json make_design_info(const NamedDesign& design, const RobotModel& robot) {
+  const EffortTotals efforts = calc_effort_totals(design.design, robot);
   json limits = json::array();
   for (const JointDrive& joint : design.design.joints) {
     limits.push_back({finite_or_null(joint.limits.min), finite_or_null(joint.limits.max)});
   }
   return {{"id", design.id},
           {"name", design.name},
-          {"total_torque_n_m", finite_or_null(calc_total_effort(design.design))},
+          {"total_torque_n_m", finite_or_null(efforts.torque_n_m)},
+          {"total_force_n", finite_or_null(efforts.force_n)},
           {"effort_limits", std::move(limits)}};
 }
 
@@ -225,7 +227,7 @@ json make_replay_set(PageSimulator& simulator, const TrackingProblem& problem,
   });
   json list = json::array();
   for (const NamedDesign& design : designs) {
-    list.push_back(make_design_info(design));
+    list.push_back(make_design_info(design, first_problem.config().robot));
   }
   json replayed = json::array();
   for (std::size_t i = 0; i < cases.size(); ++i) {

@@ -28,7 +28,7 @@ struct NamedDesign {
   const TrackingProblem* problem = nullptr;
 };
 
-nlohmann::json make_design_info(const NamedDesign& design);
+nlohmann::json make_design_info(const NamedDesign& design, const RobotModel& robot);
 nlohmann::json make_task_info(const TrackingTask& task);
 
 // ---- Cases -------------------------------------------------------------------------------------

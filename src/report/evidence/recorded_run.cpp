@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "base/build_info.hpp"
 #include "base/error.hpp"
@@ -10,6 +11,7 @@
 #include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
+#include "base/toml_text.hpp"
 #include "problems/config/config_files.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "report/evidence/page_json.hpp"
@@ -24,13 +26,34 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// An argument of the command line that names a problem, and the problem's file.
+// An argument of the command line that names a problem, the problem's file, and the settings that
+// name its robot.
 struct NamedProblem {
   std::string argument;
   fs::path file;
+  std::vector<std::string> settings = {};
 };
 
-// Returns PROBLEM of `optimize PROBLEM`. For a cell of a study it is the shipped problem with the
+// Returns the problem of `optimize --robot FILE`. The recorded path of the robot is absolute.
+std::optional<NamedProblem> find_problem_of_robot(const RecordedRun& run) {
+  const bool has_robot = std::ranges::any_of(run.command_line, [](const std::string& word) {
+    return word == "--robot" || word.starts_with("--robot=");
+  });
+  const json robot = run.configuration.at("problem").value("robot", json::object());
+  if (!has_robot || !robot.value("propose", false)) {
+    return std::nullopt;
+  }
+  NamedProblem named{"robot", resolve_config("problems", "robot")};
+  for (const char* key : {"urdf", "base", "tip"}) {
+    if (robot.contains(key)) {
+      named.settings.push_back(
+          fmt::format("robot.{}={}", key, quote_toml(robot[key].get<std::string>())));
+    }
+  }
+  return named;
+}
+
+// Returns PROBLEM of `optimize PROBLEM`, or the problem of `optimize --robot FILE`. For a cell of a study it is the shipped problem with the
 // name of the run's problem. Returns nothing if no such file exists any more.
 std::optional<NamedProblem> find_named_problem(const RecordedRun& run) {
   std::vector<std::string> words = run.command_line;
@@ -51,7 +74,7 @@ std::optional<NamedProblem> find_named_problem(const RecordedRun& run) {
       // The argument is something else, such as the value of an option.
     }
   }
-  return std::nullopt;
+  return find_problem_of_robot(run);
 }
 
 // Returns the settings that decide how a design is judged. The title and the settings of training
@@ -68,6 +91,15 @@ std::map<std::string, json> list_settings(const json& resolved) {
   }
   if (resolved.contains("function")) {
     settings.try_emplace("function.instance", 0);  // the plain form is recorded without a number
+  }
+  if (resolved.contains("robot")) {  // likewise these, which version 1.0 did not have
+    settings.try_emplace("robot.dynamics", false);
+    settings.try_emplace("robot.plant", "");
+    settings.try_emplace("control.start", "empty");
+  }
+  if (const auto start = settings.find("variables.start");
+      start != settings.end() && start->second == kProposedStart) {
+    settings.try_emplace("variables.start_bandwidth_rad_per_s", 0);
   }
   return settings;
 }
@@ -99,8 +131,9 @@ std::vector<std::string> list_overrides(const json& from, const json& to) {
 // Returns the arguments that lead to exactly this problem, or none.
 std::vector<std::string> find_problem_arguments(const NamedProblem& named, const json& recorded) {
   try {
-    const json plain = json::parse(load_problem(named.file.string()).resolved_json);
-    const auto all = list_overrides(plain, recorded);
+    const json plain = json::parse(load_problem(named.file.string(), named.settings).resolved_json);
+    std::vector<std::string> all = named.settings;
+    std::ranges::copy(list_overrides(plain, recorded), std::back_inserter(all));
     // First without the SIMD level: then the arguments suit other machines too.
     std::vector<std::string> fewer = all;
     std::erase_if(fewer, [](const auto& text) { return text.starts_with("physics.simd="); });
@@ -280,6 +313,14 @@ std::vector<double> RecordedRun::find_best() const {
 fs::path RecordedRun::find_urdf() const {
   const auto urdf = configuration.at("problem").at("robot").at("urdf").get<std::string>();
   return resolve_config("robots", urdf, input_folder);
+}
+
+std::string RecordedRun::make_begin_command() const {
+  std::vector<std::string> words = command_line;
+  if (!words.empty()) {
+    words.front() = fs::path(words.front()).filename().string();
+  }
+  return quote_command(words);
 }
 
 std::string RecordedRun::make_evaluate_command(const std::string& design,

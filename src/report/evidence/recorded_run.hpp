@@ -52,6 +52,8 @@ struct RecordedRun {
   // Returns the robot's file. Relative names of meshes refer to its folder. Throws Error{usage} if
   // the file is missing.
   std::filesystem::path find_urdf() const;
+  // Returns the command that began the run, without the program's folder.
+  std::string make_begin_command() const;
   // Returns "armwright evaluate DESIGN --problem ... ARGUMENTS", or an empty text if
   // `problem_arguments` is empty.
   std::string make_evaluate_command(const std::string& design,

@@ -100,13 +100,24 @@ void add_counts(const RecordedRun& run, Facts& facts) {
   facts.add("Evaluations without a number", fmt::format("{}", failed));
 }
 
-std::optional<double> find_total_torque(const RunResult& result) {
-  const auto torque = std::ranges::find(result.metric_names, "total_torque");
-  const auto at = static_cast<std::size_t>(torque - result.metric_names.begin());
-  return at < result.test.metrics.size() ? std::optional(result.test.metrics[at]) : std::nullopt;
+// Returns the winner's efforts. Results of version 1.0 do not tell sliding joints from turning ones.
+EffortTotals find_efforts(const RecordedRun& run) {
+  const TrackingProblem* const arm = run.tracking();
+  return arm == nullptr
+             ? get_effort_totals(*run.result)
+             : calc_effort_totals(arm->make_design(run.find_best()), arm->config().robot);
 }
 
-void add_result(const RunResult& result, Facts& facts) {
+// Returns the name of an arm's result. It does not depend on what was measured beside it, so runs of
+// all versions can be compared.
+std::string name_error(const RecordedRun& run) {
+  const TrackingProblem* const arm = run.tracking();
+  const bool never_rests = arm != nullptr && arm->config().path && arm->config().path->continuous;
+  return never_rests ? "mean error" : "mean error at rest";
+}
+
+void add_result(const RecordedRun& run, Facts& facts) {
+  const RunResult& result = *run.result;
   facts.add("End", result.end_reason);
   facts.add("Why the optimizer ended", result.end_detail);
   facts.add("Unused evaluations",
@@ -119,13 +130,20 @@ void add_result(const RunResult& result, Facts& facts) {
   const ErrorSummary& summary = result.test_summary;
   if (result.tracking) {
     facts.add("Test set", fmt::format("{}, {} cases", result.test_set, summary.cases));
-    facts.add("Mean error", summary.mean, "m");
+    facts.add("M" + name_error(run).substr(1), summary.mean, "m");
+    if (const auto& motion = result.test_motion) {
+      facts.add("Error while moving, RMS", motion->moving_rms_m, "m");
+      facts.add("Error while moving, peak", motion->moving_peak_m, "m");
+      facts.add("Error after start-up, largest", motion->start_up_m, "m");
+    }
     facts.add("Published mean error", result.published.error_m, "m");
     facts.add("Median error", summary.median, "m");
     facts.add("95th percentile", summary.percentile_95, "m");
     facts.add("Worst error", summary.worst, "m");
     facts.add("Failures", fmt::format("{}", summary.failures));
-    facts.add("Total torque", find_total_torque(result), "N m");
+    const EffortTotals efforts = find_efforts(run);
+    facts.add("Total torque", efforts.torque_n_m, "N m");
+    facts.add("Total force", efforts.force_n, "N");
     facts.add("Published total torque", result.published.total_torque_n_m, "N m");
   }
   if (!result.test.objectives.empty()) {
@@ -145,7 +163,7 @@ json make_run_facts(const RecordedRun& run) {
   add_setting(run, facts);
   add_counts(run, facts);
   if (run.result) {
-    add_result(*run.result, facts);
+    add_result(run, facts);
   }
   for (const auto& [key, label] : {std::pair{"version", "Version"}, std::pair{"git", "Commit"},
                                    std::pair{"compiler", "Compiler"}, std::pair{"cpu", "CPU"}}) {
@@ -158,10 +176,11 @@ json make_run_facts(const RecordedRun& run) {
 json make_headline(const RecordedRun& run, const History& history) {
   const auto times = find_times(run.folder);
   const std::int64_t cases = history.parts.empty() ? 0 : history.parts.back().cases;
-  json headline = {{"started", run.started}, {"evaluations", run.journal.training.size()},
-                   {"cases", cases},         {"value", nullptr},
-                   {"quantity", nullptr},    {"failures", nullptr},
-                   {"test_cases", nullptr},  {"total_torque_n_m", nullptr},
+  json headline = {{"started", run.started},   {"evaluations", run.journal.training.size()},
+                   {"cases", cases},           {"value", nullptr},
+                   {"quantity", nullptr},      {"failures", nullptr},
+                   {"test_cases", nullptr},    {"total_torque_n_m", nullptr},
+                   {"total_force_n", nullptr}, {"motion", nullptr},
                    {"times", nullptr}};
   if (times) {
     headline["times"] = {{"wall_s", times->wall_s},
@@ -173,11 +192,16 @@ json make_headline(const RecordedRun& run, const History& history) {
   }
   const RunResult& result = *run.result;
   if (result.tracking) {
-    headline["quantity"] = make_quantity({"mean error", "m"});
+    headline["quantity"] = make_quantity({name_error(run), "m"});
+    if (result.test_motion) {
+      headline["motion"] = motion_to_json(*result.test_motion);
+    }
     headline["value"] = finite_or_null(result.test_summary.mean);
     headline["failures"] = result.test_summary.failures;
     headline["test_cases"] = result.test_summary.cases;
-    headline["total_torque_n_m"] = finite_or_null(find_total_torque(result));
+    const EffortTotals efforts = find_efforts(run);
+    headline["total_torque_n_m"] = finite_or_null(efforts.torque_n_m);
+    headline["total_force_n"] = finite_or_null(efforts.force_n);
   } else if (!result.test.objectives.empty()) {
     headline["quantity"] = run.make_quantity(get_target(result));
     headline["value"] = finite_or_null(calc_target(result, result.test));

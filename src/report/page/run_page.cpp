@@ -165,10 +165,6 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
   }
   std::vector<std::string> notes = run.notes;
   add_notes(run, history, options, notes);
-  std::vector<std::string> command = run.command_line;
-  if (!command.empty()) {  // without the program's folder
-    command.front() = std::filesystem::path(command.front()).filename().string();
-  }
   const Quantity quantity = get_scalar_quantity(description.objectives);
   json progress = nullptr;
   if (!run.result) {
@@ -183,7 +179,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
       {"subtitle", run.problem ? run.problem->title : ""},
       {"program", make_program()},
       {"folder", run.folder.string()},
-      {"command", quote_command(command)},
+      {"command", run.make_begin_command()},
       {"finished", run.result.has_value()},
       {"progress", std::move(progress)},
       {"watched", options.meter == nullptr ? json(nullptr) : options.meter->observe_run(run)},

@@ -92,7 +92,7 @@ class Executor {
                       .case_errors = get_case_errors(evaluation->results),
                       .failures = list_failures(evaluation->results),
                       .points = calc_point_statistics(evaluation->results, points),
-                      .total_torque_n_m = evaluation->total_torque_n_m};
+                      .total_torque_n_m = calc_total_effort(*design)};
   }
 
   // Returns the part's design. If a run has to find it, makes the run first; returns nothing if

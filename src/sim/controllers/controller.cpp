@@ -59,6 +59,19 @@ Input make_input(double setpoint, double measurement, double dt_s, double feed_f
   return in;
 }
 
+template <class Law>
+void calc_holding_states(double effort, EffortLimits limits, std::span<const double> gains,
+                         double* states) {
+  std::array<ControllerNumber, kGains<Law>> gain;
+  std::copy(gains.begin(), gains.end(), gain.begin());
+  std::array<ControllerNumber, static_cast<std::size_t>(Law::kStates)> state;
+  state.fill(ControllerNumber(0));
+  controllers::hold_effort<Law>(
+      ControllerNumber(effort), ControllerNumber(limits.min), ControllerNumber(limits.max),
+      Fields<ControllerNumber>{gain.data(), 1}, Fields<ControllerNumber>{state.data(), 1});
+  std::ranges::transform(state, states, &ControllerNumber::v);
+}
+
 struct PidInput : LawInput {
   ControllerNumber wrap_turns(ControllerNumber difference) const {
     return turns ? ControllerNumber(wrap_angle(difference.v)) : difference;
@@ -93,6 +106,10 @@ class PidController final : public Controller {
     states_ = {};
     first_ = true;
     saturated_ = false;
+  }
+  void hold(double effort) override {
+    reset();
+    calc_holding_states<controllers::Pid>(effort, limits_, gains_, states_.data());
   }
   bool saturated() const override { return saturated_; }
 
@@ -132,6 +149,12 @@ class LawController final : public Controller {
     first_ = true;
     saturated_ = false;
   }
+  void hold(double effort) override {
+    reset();
+    controllers::hold_effort<Law>(
+        ControllerNumber(effort), ControllerNumber(limits_.min), ControllerNumber(limits_.max),
+        Fields<ControllerNumber>{gains_.data(), 1}, Fields<ControllerNumber>{states_.data(), 1});
+  }
   bool saturated() const override { return saturated_; }
 
  private:
@@ -166,7 +189,7 @@ template <class... Laws>
 std::vector<ControllerRow> make_table(controllers::LawList<Laws...>) {
   std::vector<ControllerRow> table = {{Laws::kName, Laws::kSummary, Laws::kFormula, Laws::kGains,
                                        Laws::kFeedForward, 0, Laws::kStates, Laws::convert,
-                                       make_controller<Laws>}...};
+                                       calc_holding_states<Laws>, make_controller<Laws>}...};
   for (std::size_t i = 0; i < table.size(); ++i) {
     table[i].law = static_cast<int>(i);
   }

@@ -29,8 +29,12 @@ class Controller {
   double step(double setpoint, double measurement, double dt_s) {
     return step(setpoint, measurement, dt_s, 0);
   }
-  // Returns to the state before the first step.
+  // Returns to the state before the first step, with all integrals empty.
   virtual void reset() = 0;
+  // As reset(), with the integral that gives `effort` (N m or N), clamped to the limits, while the
+  // measurement is at the setpoint. If the law has no such integral, or its gain is 0, the integral
+  // is empty.
+  virtual void hold(double effort) = 0;
   // Returns whether the last step's effort was clamped to a limit.
   virtual bool saturated() const = 0;
 };
@@ -50,6 +54,8 @@ struct ControllerRow {
   int states = 0;  // count of numbers that it keeps from step to step
   // Writes the start values of its gains (as many as `gains` has), computed from a PID's.
   void (*convert)(const controllers::PidStart& pid, double* own);
+  // Writes the states (as many as `states`) with which it holds an effort, as Controller::hold().
+  void (*hold)(double effort, EffortLimits limits, std::span<const double> gains, double* states);
   // Throws Error{usage} for a wrong count of gains, a gain that is not finite, or limits that are
   // not in order.
   std::unique_ptr<Controller> (*make)(std::span<const double> gains, EffortLimits limits,

@@ -7,6 +7,10 @@
 //   kFeedForward                 which efforts it needs in `feed_forward`
 //   convert(PidStart, own)       computes start values of its gains from those of a PID
 //   calc(in, gain, state)        returns the wanted effort and updates its state
+// A law with an integral also has this member:
+//   hold(effort, gain, state)    sets the state before the first step, of which all is 0. From then on
+//                                calc() returns `effort` while setpoint and measurement stay equal and
+//                                `feed_forward` is `effort`. An integral whose gain is 0 stays 0.
 // All efforts are clamped alike: u = min(max, max(min, wanted)). Anti-windup: `integrating` is 0
 // after a clamped step, otherwise 1, and every integral is summed as
 //   integral + integrating x h x integrand.
@@ -74,6 +78,21 @@ ARMWRIGHT_INLINE V calc_pid(const In& in, V p, V i, V d, Fields<V> state) {
   const V rate = in.calc_rate(update_change(in, in.error, state[1]));
   state[0] = integral;
   return p * in.error + i * integral + d * rate;
+}
+
+// Returns the integral that its gain turns into this effort; 0 if the gain is 0.
+template <class V>
+ARMWRIGHT_INLINE V calc_integral(V effort, V gain) {
+  return select(abs(gain) > V(0), effort / gain, V(0));
+}
+
+// Sets the state of a joint's controller before the first step so that it holds `effort`, as far as
+// the limits and the law allow. The state of a law without hold() stays 0.
+template <class Law, class V>
+void hold_effort(V effort, V low, V high, Fields<V> gain, Fields<V> state) {
+  if constexpr (requires { Law::hold(effort, gain, state); }) {
+    Law::hold(min(high, max(low, effort)), gain, state);
+  }
 }
 
 }  // namespace armwright::controllers

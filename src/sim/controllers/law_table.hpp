@@ -17,4 +17,15 @@ struct LawList {};
 using AllLaws = LawList<Pid,  // must be the first: the kernels have it inlined
                         PidFiltered, Pi2d, PidGravity, PidComputedTorque, Cascade, Neural>;
 
+// Sets the state of a joint's controller, as hold_effort(). Gains and states are those of the joint.
+template <class V>
+using HoldEffort = void (*)(V effort, V low, V high, Fields<V> gain, Fields<V> state);
+
+// Returns the function for the law at that place of the table.
+template <class V, class... Laws>
+HoldEffort<V> find_hold(int law, LawList<Laws...>) {
+  constexpr HoldEffort<V> kFunctions[] = {hold_effort<Laws, V>...};
+  return kFunctions[law];
+}
+
 }  // namespace armwright::controllers

@@ -5,6 +5,7 @@
 // larger effort limit. Weights have either sign. It starts as a PID that saturates softly: unit j
 // gets one input only, with v_j = 4. Each tanh is then at 1/4 where u = L, and there it is straight
 // to 2 %.
+// It has no hold(): a sum of tanh may reach an effort at several values of S or at none.
 //
 // docs/controllers.md uses it as the example of a controller that one file adds.
 #pragma once

@@ -30,6 +30,13 @@ struct Pi2d {
     own[3] = pid.d;
   }
 
+  // The second integral holds the effort: it grows as long as the first one is not 0.
+  template <class V>
+  static void hold(V effort, Fields<V> gain, Fields<V> state) {
+    state[2] = calc_integral(effort, gain[2]);
+    state[0] = select(abs(gain[2]) > V(0), V(0), calc_integral(effort, gain[1]));
+  }
+
   template <class In, class V = typename In::Value>
   ARMWRIGHT_INLINE static V calc(const In& in, Fields<V> gain, Fields<V> state) {
     const V pid = calc_pid(in, gain[0], gain[1], gain[3], state);

@@ -24,6 +24,11 @@ struct Pid {
     own[2] = pid.d;
   }
 
+  template <class V>
+  static void hold(V effort, Fields<V> gain, Fields<V> state) {
+    state[0] = calc_integral(effort, gain[1]);
+  }
+
   template <class In, class V = typename In::Value>
   ARMWRIGHT_INLINE static V calc(const In& in, Fields<V> gain, Fields<V> state) {
     return calc_pid(in, gain[0], gain[1], gain[2], state);

@@ -28,6 +28,12 @@ struct PidFeedForward {
     own[3] = 1;
   }
 
+  // The integral holds what the share leaves.
+  template <class V>
+  static void hold(V effort, Fields<V> gain, Fields<V> state) {
+    state[0] = calc_integral((V(1) - gain[3]) * effort, gain[1]);
+  }
+
   template <class In, class V = typename In::Value>
   ARMWRIGHT_INLINE static V calc(const In& in, Fields<V> gain, Fields<V> state) {
     return calc_pid(in, gain[0], gain[1], gain[2], state) + gain[3] * in.feed_forward;

@@ -39,6 +39,11 @@ struct PidFiltered {
     own[5] = 1;
   }
 
+  template <class V>
+  static void hold(V effort, Fields<V> gain, Fields<V> state) {
+    state[0] = calc_integral(effort, gain[1]);
+  }
+
   template <class In, class V = typename In::Value>
   ARMWRIGHT_INLINE static V calc(const In& in, Fields<V> gain, Fields<V> state) {
     V& integral = state[0];

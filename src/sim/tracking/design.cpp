@@ -21,6 +21,16 @@ double calc_total_effort(const ArmDesign& design) {
   return total;
 }
 
+EffortTotals calc_effort_totals(const ArmDesign& design, const RobotModel& robot) {
+  EffortTotals totals;
+  for (std::size_t i = 0; i < design.joints.size(); ++i) {
+    std::optional<double>& total =
+        robot.joints[i].kind == JointKind::revolute ? totals.torque_n_m : totals.force_n;
+    total = total.value_or(0) + calc_largest_effort(design.joints[i]);
+  }
+  return totals;
+}
+
 ArmDesign convert_design(const ArmDesign& design, std::string_view controller, double period_s) {
   if (design.controller == controller) {
     return design;

@@ -27,8 +27,16 @@ struct ArmDesign {
 // Returns the larger of a joint's two effort limits, max(-min, max), in N m or N.
 double calc_largest_effort(const JointDrive& joint);
 // Returns the sum of the largest efforts over the joints: the thesis's total torque magnitude. The
-// unit is N m if all joints are revolute.
+// unit is N m if all joints are revolute. Objectives count the efforts of all joints alike, in N m
+// and N; EffortTotals is what results show.
 double calc_total_effort(const ArmDesign& design);
+
+// The sums of the largest efforts of the joints that turn, and of those that slide.
+struct EffortTotals {
+  std::optional<double> torque_n_m;  // nothing if no joint turns
+  std::optional<double> force_n;     // nothing if no joint slides
+};
+EffortTotals calc_effort_totals(const ArmDesign& design, const RobotModel& robot);
 
 // Returns the design itself if it is for the given controller. From a PID design it makes one for
 // that controller: ControllerRow::convert computes the gains, and the rest stays. Throws

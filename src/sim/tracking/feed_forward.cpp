@@ -10,6 +10,8 @@
 // friction and elasticity exactly from the target at the period's start to the target at its end.
 // With those of gravity, an arm at rest stays at rest. If a control period has more than one step,
 // the arm ends beside the target; the distance grows with h.
+// The efforts that hold the arm when its controllers are enabled (ControlStart::gravity) are those of
+// gravity in the start positions.
 #include <algorithm>
 #include <vector>
 
@@ -34,49 +36,38 @@ double calc_plant_effort(const Joint& joint, double q, double rate, double accel
          articulated::calc_counterbalance(joint, q);
 }
 
-}  // namespace
+// Inverse dynamics of an arm, with all that its joints' plants take from the motors.
+class EffortModel {
+ public:
+  EffortModel(const RobotModel& robot, const articulated::ChainModel& chain)
+      : robot_(robot),
+        chain_(chain),
+        has_plant_(robot.has_plant()),
+        model_(chain.numbers().begin(), chain.numbers().end()),
+        scratch_(static_cast<std::size_t>(articulated::calc_dynamics_packs(chain.joints())),
+                 FeedForwardNumber(0)),
+        q_(robot.joint_count()) {}
 
-void TrackingSetup::fill_feed_forward(TargetTable& table) const {
-  const FeedForward kind = task_.feed_forward;
-  if (kind == FeedForward::none) {
-    return;
+  JointKind kind(std::size_t joint) const {
+    return (chain_.flags()[joint] & articulated::kPrismatic) == 0 ? JointKind::revolute
+                                                                  : JointKind::prismatic;
   }
-  const articulated::ChainModel& chain = *chain_;
-  const double period_s = task_.control_period_s;
-  const bool has_plant = robot_.has_plant();
-  const std::size_t n = table.joints;
-  const auto joint_kind = [&](std::size_t i) {
-    return (chain.flags()[i] & articulated::kPrismatic) == 0 ? JointKind::revolute
-                                                             : JointKind::prismatic;
-  };
-  const std::vector<FeedForwardNumber> model(chain.numbers().begin(), chain.numbers().end());
-  std::vector<FeedForwardNumber> scratch(
-      static_cast<std::size_t>(articulated::calc_dynamics_packs(chain.joints())),
-      FeedForwardNumber(0));
-  FeedForwardNumber* memory = scratch.data();
-  articulated::ChainDynamics<FeedForwardNumber, FeedForwardChain> dynamics(
-      FeedForwardChain(chain.joints(), chain.flags().data(), chain.tilted_gravity()), model.data(),
-      memory);
-  // The state at the start of the period, and the acceleration during it.
-  std::vector<FeedForwardNumber> q(n), rate(n, FeedForwardNumber(0)),
-      acceleration(n, FeedForwardNumber(0));
-  const double* before = table.start_positions.data();
-  table.feed_forward_effort.resize(table.joint_positions.size());
-  for (int step = 0; step < table.steps; ++step) {
-    const double* const target = table.positions(step).data();
-    std::vector<FeedForwardNumber> next = rate;
-    if (kind == FeedForward::inverse_dynamics) {
-      for (std::size_t i = 0; i < n; ++i) {
-        next[i] = calc_displacement(joint_kind(i), before[i], target[i]) / period_s;
-        acceleration[i] = (next[i].v - rate[i].v) / period_s;
-      }
-    }
+
+  // Writes the efforts of a period, one per joint: positions and rates at its start, the
+  // accelerations during it, and the rates at its end.
+  void calc(const double* positions, const std::vector<FeedForwardNumber>& rate,
+            const std::vector<FeedForwardNumber>& acceleration,
+            const std::vector<FeedForwardNumber>& next_rate, double* efforts) {
+    const std::size_t n = q_.size();
+    FeedForwardNumber* memory = scratch_.data();
+    articulated::ChainDynamics<FeedForwardNumber, FeedForwardChain> dynamics(
+        FeedForwardChain(chain_.joints(), chain_.flags().data(), chain_.tilted_gravity()),
+        model_.data(), memory);
     for (std::size_t i = 0; i < n; ++i) {
-      q[i] = before[i];
+      q_[i] = positions[i];
     }
-    dynamics.set_posture(q.data(), true);
-    dynamics.calc_equations(q.data(), rate.data());
-    double* const efforts = table.feed_forward_effort.data() + static_cast<std::size_t>(step) * n;
+    dynamics.set_posture(q_.data(), true);
+    dynamics.calc_equations(q_.data(), rate.data());
     for (std::size_t i = 0; i < n; ++i) {
       double effort = dynamics.bias(static_cast<int>(i)).v;
       for (std::size_t j = 0; j < n; ++j) {
@@ -85,10 +76,53 @@ void TrackingSetup::fill_feed_forward(TargetTable& table) const {
             acceleration[j].v;
       }
       efforts[i] = effort;
-      if (has_plant) {
-        efforts[i] += calc_plant_effort(robot_.joints[i], before[i], next[i].v, acceleration[i].v);
+      if (has_plant_) {
+        efforts[i] +=
+            calc_plant_effort(robot_.joints[i], positions[i], next_rate[i].v, acceleration[i].v);
       }
     }
+  }
+
+ private:
+  const RobotModel& robot_;
+  const articulated::ChainModel& chain_;
+  bool has_plant_;
+  std::vector<FeedForwardNumber> model_, scratch_, q_;
+};
+
+}  // namespace
+
+void TrackingSetup::fill_efforts(TargetTable& table) const {
+  const FeedForward kind = task_.feed_forward;
+  const bool holds = task_.control_start == ControlStart::gravity;
+  if (kind == FeedForward::none && !holds) {
+    return;
+  }
+  const double period_s = task_.control_period_s;
+  const std::size_t n = table.joints;
+  EffortModel model(robot_, *chain_);
+  std::vector<FeedForwardNumber> rate(n, FeedForwardNumber(0));  // at the start of the period
+  std::vector<FeedForwardNumber> acceleration = rate;
+  const double* before = table.start_positions.data();
+  if (holds) {
+    table.holding_effort.resize(n);
+    model.calc(before, rate, acceleration, rate, table.holding_effort.data());
+  }
+  if (kind == FeedForward::none) {
+    return;
+  }
+  table.feed_forward_effort.resize(table.joint_positions.size());
+  for (int step = 0; step < table.steps; ++step) {
+    const double* const target = table.positions(step).data();
+    std::vector<FeedForwardNumber> next = rate;
+    if (kind == FeedForward::inverse_dynamics) {
+      for (std::size_t i = 0; i < n; ++i) {
+        next[i] = calc_displacement(model.kind(i), before[i], target[i]) / period_s;
+        acceleration[i] = (next[i].v - rate[i].v) / period_s;
+      }
+    }
+    model.calc(before, rate, acceleration, next,
+               table.feed_forward_effort.data() + static_cast<std::size_t>(step) * n);
     rate = next;
     before = target;
   }

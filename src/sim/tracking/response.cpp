@@ -88,6 +88,48 @@ double calc_settling_time_s(const TipMove& move, double band_m) {
   return std::max(0.0, settled_s - move.arrival_s);
 }
 
+void MotionErrors::add(const MotionErrors& other) {
+  moving_squares_m2 += other.moving_squares_m2;
+  moving_periods += other.moving_periods;
+  moving_peak_m = std::max(moving_peak_m, other.moving_peak_m);
+  if (other.start_up_m) {
+    start_up_m = std::max(start_up_m.value_or(0), *other.start_up_m);
+  }
+}
+
+std::optional<MotionSummary> MotionErrors::summarize() const {
+  if (moving_periods == 0) {
+    return std::nullopt;
+  }
+  const double rms_m = std::sqrt(moving_squares_m2 / static_cast<double>(moving_periods));
+  return MotionSummary{
+      .moving_rms_m = rms_m, .moving_peak_m = moving_peak_m, .start_up_m = start_up_m};
+}
+
+MotionErrors measure_motion(const TrackingTask& task, const TargetTable& targets,
+                            std::span<const double> errors_m) {
+  MotionErrors errors;
+  for (std::size_t k = 0; k < targets.segments.size(); ++k) {
+    const Segment& segment = targets.segments[k];
+    const auto own = errors_m.subspan(static_cast<std::size_t>(segment.first_step),
+                                      static_cast<std::size_t>(segment.steps));
+    if (k == 0 && !segment.is_sample) {
+      errors.start_up_m = std::ranges::max(own);
+    }
+    if (k == 0 && !task.count_first_point) {
+      continue;
+    }
+    const auto moving =
+        segment.is_sample ? own : own.first(static_cast<std::size_t>(segment.window_start));
+    for (const double error_m : moving) {
+      errors.moving_squares_m2 += error_m * error_m;
+      errors.moving_peak_m = std::max(errors.moving_peak_m, error_m);
+    }
+    errors.moving_periods += moving.size();
+  }
+  return errors;
+}
+
 std::vector<double> calc_joint_speeds(const RobotModel& robot, const TargetTable& targets,
                                       const TrackingResult& result, double period_s) {
   const std::size_t joints = targets.joints;

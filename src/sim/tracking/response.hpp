@@ -14,6 +14,16 @@
 // A joint's speed between two recorded positions is |dq| / h, with h the control period and dq
 // taken the short way round for revolute joints.
 //
+// The other half of this file measures the distance d_i between the tip and the moving target at the
+// ends of the control periods i, from recordings made with RecordingOptions::error_series. Every tip
+// counts, whatever the tool's orientation. The error of a point counts the rests alone
+// (simulation.hpp), so these are the moves and the start:
+//   error while moving     the root mean square of d_i, and the largest d_i, over the periods of the
+//                          moves that count in the case's error, from the start of each move to the
+//                          last end of a period before the target's arrival (t < t_m)
+//   error after start-up   the largest d_i of the first segment: until the target's first rest ends
+// A continuous path has no rests. All its samples count as moving, and it has no error after start-up.
+//
 // Source: overshoot, rise and settling time as of step responses, Franklin, Powell and Emami-Naeini
 // (2019), Feedback Control of Dynamic Systems, section 3.4; IEC 60050-351. Two things differ from
 // the source. The quantity is the way of the tip along a straight move, not one variable after a
@@ -57,6 +67,29 @@ std::optional<TipMove> find_tip_move(const TargetTable& targets, std::size_t seg
 double calc_overshoot(const TipMove& move);
 double calc_rise_time_s(const TipMove& move);
 double calc_settling_time_s(const TipMove& move, double band_m);
+
+// The errors of one or several simulations beside those of their points.
+struct MotionSummary {
+  double moving_rms_m = 0, moving_peak_m = 0;
+  std::optional<double> start_up_m;  // nothing for continuous paths
+};
+
+// The sums from which a MotionSummary is made.
+struct MotionErrors {
+  double moving_squares_m2 = 0;  // the sum of d_i^2 over the periods of the moves
+  std::size_t moving_periods = 0;
+  double moving_peak_m = 0;
+  std::optional<double> start_up_m;  // nothing for continuous paths
+
+  // Adds the errors of another simulation.
+  void add(const MotionErrors& other);
+  // Returns nothing if no period of a move was added.
+  std::optional<MotionSummary> summarize() const;
+};
+
+// Measures a simulation that came to its end. `errors_m` is its error series.
+MotionErrors measure_motion(const TrackingTask& task, const TargetTable& targets,
+                            std::span<const double> errors_m);
 
 // Returns the largest speed of each joint (rad/s or m/s), from the start positions on.
 std::vector<double> calc_joint_speeds(const RobotModel& robot, const TargetTable& targets,

@@ -37,6 +37,9 @@ struct TargetTable {
   // Feed-forward efforts, laid out like joint_positions. They are computed for the arm of the setup
   // that made the table. Empty if the task has FeedForward::none.
   std::vector<double> feed_forward_effort;
+  // The efforts, one per joint, with which the controllers begin: those that hold the same arm at rest
+  // in the start positions. Empty if the task has ControlStart::empty.
+  std::vector<double> holding_effort;
   // Positions of the robot's tool points at the end of each segment: one row per segment.
   std::vector<Eigen::Vector3d> tool_points_m;
   // Not empty if the case cannot be simulated: the reason. joint_positions then ends at the first

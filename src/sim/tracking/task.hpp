@@ -37,6 +37,12 @@ const std::vector<std::string>& kinematics_names();  // in the order of the enum
 enum class LimitPolicy { ignore, warn, enforce };
 const std::vector<std::string>& limit_policy_names();  // in the order of the enum
 
+// What the integrals of the controllers hold when these are enabled, at the start of a test case.
+//   empty    nothing, as in version 1.0: the arm sags until they have filled
+//   gravity  the arm in its first posture (TargetTable::holding_effort)
+enum class ControlStart { empty, gravity };
+const std::vector<std::string>& control_start_names();  // in the order of the enum
+
 struct TrackingTask {
   SignalShape signal = SignalShape::complex;
   double speed_m_per_s = 1.5;  // v, nominal average speed
@@ -58,6 +64,7 @@ struct TrackingTask {
   // Joint positions (rad or m) from which numeric kinematics search. Empty: middles of the ranges.
   std::vector<double> home;
   FeedForward feed_forward = FeedForward::none;  // the efforts that target tables hold
+  ControlStart control_start = ControlStart::empty;
   PhysicsSettings physics;
 };
 

@@ -106,6 +106,9 @@ TrackingLoop::TrackingLoop(const TrackingSetup& setup, const TrackingJob& job)
   for (std::size_t i = 0; i < joints; ++i) {
     const JointDrive& drive = job.design->joints[i];
     controllers_.push_back(row.make(drive.gains, drive.limits, setup.robot().joints[i].kind));
+    if (!job.targets->holding_effort.empty()) {
+      controllers_.back()->hold(job.targets->holding_effort[i]);
+    }
   }
   q_.resize(joints);
   effort_.resize(joints);

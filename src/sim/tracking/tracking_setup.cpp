@@ -64,7 +64,8 @@ void repeat_row(double* begin, const double* end) {
 
 std::size_t TargetTable::size_bytes() const {
   return sizeof *this + segments.size() * sizeof(Segment) +
-         (start_positions.size() + joint_positions.size() + feed_forward_effort.size()) *
+         (start_positions.size() + joint_positions.size() + feed_forward_effort.size() +
+          holding_effort.size()) *
              sizeof(double) +
          tool_points_m.size() * sizeof(Eigen::Vector3d) + unreachable.size();
 }
@@ -76,6 +77,11 @@ const std::vector<std::string>& kinematics_names() {
 
 const std::vector<std::string>& limit_policy_names() {
   static const std::vector<std::string> names = {"ignore", "warn", "enforce"};
+  return names;
+}
+
+const std::vector<std::string>& control_start_names() {
+  static const std::vector<std::string> names = {"empty", "gravity"};
   return names;
 }
 
@@ -402,7 +408,7 @@ std::vector<TargetTable> TrackingSetup::make_targets(std::span<const TestCase> t
         continue;
       }
     }
-    fill_feed_forward(table);
+    fill_efforts(table);
   }
   return tables;
 }

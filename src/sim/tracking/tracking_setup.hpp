@@ -50,8 +50,9 @@ class TrackingSetup {
   void make_timeline(const TestCase& test_case, TargetTable& table) const;
   void solve_closed_form(const TestCase& test_case, TargetTable& table) const;
   void solve_numerically(std::span<const TestCase> test_cases, std::span<TargetTable> tables) const;
-  // Computes the table's feed-forward efforts from its joint positions (feed_forward.cpp).
-  void fill_feed_forward(TargetTable& table) const;
+  // Computes the efforts that the task wants in the table, from its joint positions
+  // (feed_forward.cpp).
+  void fill_efforts(TargetTable& table) const;
   ToolPose make_pose(const TestCase& test_case, std::size_t point) const;
   // Returns how many of a segment's steps have targets of their own: the steps before the target
   // has arrived, and the first step at whose end it has.

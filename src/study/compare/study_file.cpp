@@ -2,17 +2,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/folder.hpp"
 #include "base/hash.hpp"
+#include "base/json_text.hpp"
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "base/toml_text.hpp"
 #include "optimizers/plugins/recorded_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/config_files.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "problems/user/user_problem.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/compare/case_sets.hpp"
@@ -124,16 +128,37 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
   }
 }
 
+// Returns the settings with which version 1.0 recorded an arm: its joints and controllers, and what
+// it proposed, which the problem's record in the study's folder has.
+std::vector<std::vector<std::string>> list_old_arms(const std::filesystem::path& folder,
+                                                    const std::string& label) {
+  std::vector<std::string> arm = {kNoDynamics, kNoPlant, kEmptyStart};
+  const auto file = folder / make_problem_name(label);
+  if (path_exists(file)) {
+    const std::string text = read_file(file, kPlanLimit_bytes);
+    check_json_depth(text, file.string());
+    const auto recorded = nlohmann::json::parse(text, nullptr, false);
+    if (recorded.is_object()) {
+      std::ranges::move(list_first_proposal(recorded), std::back_inserter(arm));
+    }
+  }
+  std::vector<std::string> scalar = arm;
+  scalar.emplace_back(kScalarSolver);
+  return {{kScalarSolver}, std::move(arm), std::move(scalar)};
+}
+
 // Loads the problem as it was when the plan was made: on another SIMD level, because "auto" may
-// choose another one on this machine, or as the plain form of a function, with the scalar solver of
-// the inverse kinematics, or with ideal joints, as in version 1.0. Returns false if none of these
-// gives the recorded configuration.
-bool load_as_recorded(const NamedProblem& named, StudyProblem& problem) {
+// choose another one on this machine, or as version 1.0 recorded it: as the plain form of a function,
+// with the scalar solver of the inverse kinematics, or with ideal joints, controllers that start
+// empty, and its proposals. `folder` is that of the plan. Returns false if none of these gives the
+// recorded configuration.
+bool load_as_recorded(const NamedProblem& named, const std::filesystem::path& folder,
+                      StudyProblem& problem) {
   std::vector<std::vector<std::string>> variants;
   if (problem.loaded.function) {
     variants = {{kPlainForm}};
   } else if (problem.loaded.tracking()) {
-    variants = {{kScalarSolver}, {kNoDynamics, kNoPlant}, {kScalarSolver, kNoDynamics, kNoPlant}};
+    variants = list_old_arms(folder, problem.label);
     const std::vector<std::vector<std::string>> old = variants;
     for (const std::string& level : supported_simd_names()) {
       const std::string simd = "physics.simd=" + level;
@@ -175,7 +200,9 @@ void record_description(StudyProblem& problem) {
 }
 
 // With `reads_programs`, takes the files of programs as they are recorded, because they may be gone.
-void load_problems(const RawPlan& raw, bool reads_programs, StudyPlan& plan) {
+// `folder` is that of the plan's file, or empty.
+void load_problems(const RawPlan& raw, const std::filesystem::path& folder, bool reads_programs,
+                   StudyPlan& plan) {
   std::vector<std::string> labels;
   for (const NamedProblem& named : raw.problems) {
     StudyProblem problem;
@@ -195,7 +222,7 @@ void load_problems(const RawPlan& raw, bool reads_programs, StudyPlan& plan) {
     set_schedule(named.schedule ? named.schedule : raw.schedule, problem);
     std::string hash = calc_configuration_hash(problem.loaded);
     if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash &&
-        load_as_recorded(named, problem)) {
+        load_as_recorded(named, folder, problem)) {
       hash = named.configuration_sha256;
     }
     if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash) {
@@ -467,7 +494,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   plan.baselines = plan.baselines && request.baselines;
   check_size(raw, plan);
   const bool reads_programs = !plan.programs.may_describe && request.plugins != PluginUse::run;
-  load_problems(raw, reads_programs, plan);
+  load_problems(raw, record, reads_programs, plan);
   if (!plan.programs.may_describe) {
     std::ranges::move(list_programs(plan.problems), std::back_inserter(recorded));
   }

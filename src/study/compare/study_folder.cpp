@@ -25,7 +25,6 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kPlanFile = "study.toml";
-constexpr std::size_t kPlanLimit_bytes = std::size_t{16} << 20;
 
 // Writes what is not ASCII as JSON does (\u00e9), because the hash of a plan that 1.0 wrote depends
 // on it. TOML forbids JSON's forms of delete and of characters beyond U+FFFF, whose UTF-8 begins with
@@ -193,10 +192,6 @@ json index_by_label(const json& list, const char* ignored_key) {
     by_label[entry.at("label").get<std::string>()] = entry;
   }
   return by_label;
-}
-
-std::string make_problem_name(const std::string& label) {
-  return "problems/" + escape_name(label) + ".json";
 }
 
 // Returns the differences between a problem's recorded configuration and the present one.

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "problems/config/problem_loader.hpp"
 #include "study/run/run_folder.hpp"
 
 namespace armwright {
@@ -92,6 +94,12 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
   if (problem.loaded.tracking() != nullptr && !resolved["robot"].contains("plant")) {
     settings.emplace_back(kNoPlant);
   }
+  const auto control = resolved.find("control");
+  if (problem.loaded.tracking() != nullptr &&
+      (control == resolved.end() || !control->contains("start"))) {
+    settings.emplace_back(kEmptyStart);
+  }
+  std::ranges::move(list_first_proposal(resolved), std::back_inserter(settings));
   LoadedProblem loaded = load_for_method(problem, optimizer, settings, programs);
   if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {
     throw Error(ErrorKind::usage,

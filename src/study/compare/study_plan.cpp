@@ -236,6 +236,10 @@ StudyCost calc_cost(const StudyPlan& plan) {
   return cost;
 }
 
+std::string make_problem_name(const std::string& label) {
+  return "problems/" + escape_name(label) + ".json";
+}
+
 std::string escape_name(std::string_view name) {
   std::string escaped;
   for (std::size_t i = 0; i < name.size(); ++i) {

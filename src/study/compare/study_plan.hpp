@@ -261,5 +261,9 @@ StudyCost calc_cost(const StudyPlan& plan);
 // beginning) '.' stay; any other byte becomes %XX. Two different names never become the same one,
 // and no file name is hidden or leads out of its folder.
 std::string escape_name(std::string_view name);
+// Returns the name of the file, relative to the study's folder, that has a problem's configuration.
+std::string make_problem_name(const std::string& label);
+// The largest recorded plan or problem that is read.
+inline constexpr std::size_t kPlanLimit_bytes = std::size_t{16} << 20;
 
 }  // namespace armwright

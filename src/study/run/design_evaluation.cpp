@@ -17,8 +17,8 @@ namespace {
 // Returns false if it was stopped.
 template <class Take>
 bool simulate_all(const TrackingProblem& problem, const ArmDesign& design, const ChosenCases& cases,
-                  unsigned jobs, StopSignal& stop, RunObserver& observer, Progress progress,
-                  const Take& take) {
+                  unsigned jobs, bool motion, StopSignal& stop, RunObserver& observer,
+                  Progress progress, const Take& take) {
   // The cases between two reports of the progress must occupy all threads.
   constexpr std::uint64_t kCasesPerJob = 10;
   constexpr std::uint64_t kBatchesPerJob = 4;
@@ -30,7 +30,7 @@ bool simulate_all(const TrackingProblem& problem, const ArmDesign& design, const
   observer.on_progress(progress);
   for (std::uint64_t first = 0; first < cases.count;) {
     const std::uint64_t count = std::min(cases.count - first, at_once);
-    auto results = evaluate_design(problem, design, cases.set, first, count, jobs, stop);
+    auto results = evaluate_design(problem, design, cases.set, first, count, jobs, motion, stop);
     if (!results) {
       return false;
     }
@@ -70,7 +70,7 @@ std::optional<std::vector<MeasuredCase>> evaluate_design(const TrackingProblem& 
                                                          const ArmDesign& design,
                                                          const TestSet& set, std::uint64_t first,
                                                          std::uint64_t cases, unsigned jobs,
-                                                         StopSignal& stop) {
+                                                         bool motion, StopSignal& stop) {
   problem.check_design(design);
   std::vector<MeasuredCase> results(cases);
   ThreadPool pool(jobs);
@@ -79,7 +79,7 @@ std::optional<std::vector<MeasuredCase>> evaluate_design(const TrackingProblem& 
     if (!stop.requested()) {
       const std::size_t begin = number * chunk;
       const std::size_t count = std::min(chunk, results.size() - begin);
-      std::ranges::move(problem.measure(design, set, first + begin, count),
+      std::ranges::move(problem.measure(design, set, first + begin, count, motion),
                         results.begin() + static_cast<std::ptrdiff_t>(begin));
     }
   });
@@ -96,13 +96,15 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
                                                        StopSignal& stop, RunObserver& observer,
                                                        Progress progress) {
   DesignEvaluation evaluation;
+  MotionErrors motion;
   const auto keep = [&](std::vector<MeasuredCase> cases_measured) {
     for (MeasuredCase& one : cases_measured) {
       evaluation.results.push_back(std::move(one.result));
       evaluation.required.push_back(std::move(one.required));
+      motion.add(one.motion);
     }
   };
-  if (!simulate_all(problem, design, cases, jobs, stop, observer, progress, keep)) {
+  if (!simulate_all(problem, design, cases, jobs, true, stop, observer, progress, keep)) {
     return std::nullopt;
   }
   std::vector<double> errors;
@@ -115,7 +117,8 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
     numbers += error ? 1 : 0;
   }
   evaluation.summary = summarize(errors, kFailureError_m);
-  evaluation.total_torque_n_m = calc_total_effort(design);
+  evaluation.motion = motion.summarize();
+  evaluation.efforts = calc_effort_totals(design, problem.config().robot);
   if (numbers > 0) {
     evaluation.mean_energy_j = energy_j / numbers;
   }
@@ -130,7 +133,7 @@ std::optional<ErrorSurvey> survey_with_progress(const TrackingProblem& problem,
   std::vector<double> errors;
   bool failed = false;
   const auto take = [&](const std::vector<MeasuredCase>& measured) {
-    for (const auto& [result, required] : measured) {
+    for (const auto& [result, required, motion] : measured) {
       const double error = get_number(result);
       if (!failed && !(error <= kFailureError_m)) {
         failed = true;
@@ -142,7 +145,7 @@ std::optional<ErrorSurvey> survey_with_progress(const TrackingProblem& problem,
       errors.push_back(error);
     }
   };
-  if (!simulate_all(problem, design, cases, jobs, stop, observer, progress, take)) {
+  if (!simulate_all(problem, design, cases, jobs, false, stop, observer, progress, take)) {
     return std::nullopt;
   }
   survey.summary = summarize(errors, kFailureError_m);

@@ -26,19 +26,20 @@ struct ChosenCases {
 const TrackingProblem& require_tracking(const LoadedProblem& problem);
 
 // Evaluates a design on the cases first, ..., first + cases - 1 of a set, on `jobs` threads.
-// Returns one result per case, with the values of the problem's requirements, or nothing if
-// stopped. Throws Error{usage} if the design does not fit the problem.
+// Returns one result per case, with the values of the problem's requirements and, with `motion`, the
+// errors of the motion, or nothing if stopped. Throws Error{usage} if the design does not fit the problem.
 std::optional<std::vector<MeasuredCase>> evaluate_design(const TrackingProblem& problem,
                                                          const ArmDesign& design,
                                                          const TestSet& set, std::uint64_t first,
                                                          std::uint64_t cases, unsigned jobs,
-                                                         StopSignal& stop);
+                                                         bool motion, StopSignal& stop);
 
 struct DesignEvaluation {
   std::vector<TrackingResult> results;               // one per case
   std::vector<std::vector<RequiredValue>> required;  // per case, one per requirement
   ErrorSummary summary;
-  double total_torque_n_m = 0;
+  std::optional<MotionSummary> motion;  // over the cases with an error
+  EffortTotals efforts;
   std::optional<double> mean_energy_j;  // over the cases with an error
 };
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/tracking/response.hpp"
 #include "study/statistics/summary.hpp"
 
 namespace armwright {
@@ -65,6 +66,33 @@ inline ErrorSummary summary_from_json(const nlohmann::json& j) {
           .median = optional_from_json(j.at("median")),
           .percentile_95 = optional_from_json(j.at("percentile_95")),
           .worst = optional_from_json(j.at("worst"))};
+}
+
+inline nlohmann::json motion_to_json(const MotionSummary& motion) {
+  return {{"error_while_moving_rms_m", motion.moving_rms_m},
+          {"error_while_moving_peak_m", motion.moving_peak_m},
+          {"error_after_start_up_m", optional_to_json(motion.start_up_m)}};
+}
+inline MotionSummary motion_from_json(const nlohmann::json& j) {
+  return {.moving_rms_m = j.at("error_while_moving_rms_m"),
+          .moving_peak_m = j.at("error_while_moving_peak_m"),
+          .start_up_m = optional_from_json(j.at("error_after_start_up_m"))};
+}
+
+// Adds the errors in motion, and the total force if a joint slides, to the summary of an evaluation.
+inline void add_motion(const std::optional<MotionSummary>& motion, const EffortTotals& efforts,
+                       nlohmann::json& summary) {
+  if (motion) {
+    summary.update(motion_to_json(*motion));
+  }
+  if (efforts.force_n) {
+    summary["total_force_n"] = *efforts.force_n;
+  }
+}
+
+inline nlohmann::json efforts_to_json(const EffortTotals& efforts) {
+  return {{"total_torque_n_m", optional_to_json(efforts.torque_n_m)},
+          {"total_force_n", optional_to_json(efforts.force_n)}};
 }
 
 }  // namespace armwright

@@ -11,6 +11,7 @@
 #include "process/output_log.hpp"
 #include "process/stop_scope.hpp"
 #include "study/journal/journal_format.hpp"
+#include "study/run/design_evaluation.hpp"
 #include "study/run/run_evaluator.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run/run_times.hpp"
@@ -120,6 +121,35 @@ void check_not_idle(const RunPlan& plan, const RunEvaluator& evaluator) {
   }
 }
 
+// Measures what the winner does beside its errors at rest, on the cases of its test. Returns false if
+// stopped. A comparison's cells, told runs and runs that version 1.0 began are not measured.
+bool measure_winner(const RunRequest& request, const RunPlan& plan, StopSignal& stop,
+                    RunResult& result) {
+  const TrackingProblem* const arm = plan.problem.tracking();
+  if (arm == nullptr || !result.winner || request.derived != DerivedFiles::all ||
+      plan.selection.evaluated_only || plan.selection.most == 0) {
+    return true;
+  }
+  const ArmDesign design = arm->make_design(result.judged[*result.winner].candidate.x);
+  const CaseSets& sets = plan.problem.sets;
+  const auto cases =
+      evaluate_design(*arm, design, arm->get_set(sets.test), 0,
+                      static_cast<std::uint64_t>(sets.test_cases), request.jobs, true, stop);
+  if (!cases) {
+    return false;
+  }
+  MotionErrors motion;
+  for (const MeasuredCase& one : *cases) {
+    motion.add(one.motion);
+  }
+  result.test_motion = motion.summarize();
+  const EffortTotals efforts = calc_effort_totals(design, arm->config().robot);
+  if (efforts.force_n) {
+    result.sliding_efforts = efforts;
+  }
+  return true;
+}
+
 void warn_of_fewer_threads(std::size_t granted, std::size_t wanted, RunObserver& observer) {
   if (granted < wanted) {
     observer.on_message(
@@ -223,6 +253,10 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   journal.close();
   try {
     const StopScope scope(&stop);
+    if (!measure_winner(request, plan, stop, result)) {
+      add_time();
+      return std::nullopt;
+    }
     write_derived_files(folder, plan, result, read_journal(folder.journal()), request.derived,
                         add_time);
   } catch (const WorkStopped&) {  // while a user's problem recorded the winner

@@ -319,6 +319,11 @@ std::vector<std::string> find_old_settings(const std::filesystem::path& folder,
       kScalarSolver);
   add(arm->config().own_effort_limits && lacks("/robot/dynamics"), kNoDynamics);
   add(arm->config().own_effort_limits && lacks("/robot/plant"), kNoPlant);
+  add(arm->config().task.control_start == ControlStart::gravity && lacks("/control/start"),
+      kEmptyStart);
+  for (const std::string& setting : list_first_proposal(recorded)) {
+    add(true, setting);
+  }
   return old;
 }
 

@@ -216,6 +216,19 @@ double get_failure_error(const RunResult& result) {
   return result.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
 }
 
+EffortTotals get_effort_totals(const RunResult& result) {
+  if (result.sliding_efforts.force_n) {
+    return result.sliding_efforts;
+  }
+  const auto torque = std::ranges::find(result.metric_names, "total_torque");
+  const auto at = static_cast<std::size_t>(torque - result.metric_names.begin());
+  EffortTotals totals;
+  if (at < result.test.metrics.size()) {
+    totals.torque_n_m = result.test.metrics[at];
+  }
+  return totals;
+}
+
 bool is_proven_feasible(const Evaluation& evaluation) {
   return is_feasible(evaluation) && evaluation.failed_cases == 0;
 }
@@ -295,6 +308,13 @@ std::string to_json(const RunResult& result) {
     j["winner"] = {{"candidate", *result.winner},
                    {"test", evaluation_to_json(result.test)},
                    {"test_summary", summary_to_json(result.test_summary)}};
+    // Results of version 1.0 have none of these.
+    if (result.test_motion) {
+      j["winner"]["test_motion"] = motion_to_json(*result.test_motion);
+    }
+    if (result.sliding_efforts.force_n) {
+      j["winner"]["efforts"] = efforts_to_json(result.sliding_efforts);
+    }
   }
   return j.dump(1) + "\n";
 }
@@ -368,6 +388,14 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
       }
       result.test = evaluation_from_json(j.at("winner").at("test"));
       result.test_summary = summarize(result.test.case_errors, get_failure_error(result));
+      if (j.at("winner").contains("test_motion")) {
+        result.test_motion = motion_from_json(j["winner"]["test_motion"]);
+      }
+      if (j.at("winner").contains("efforts")) {
+        const json& efforts = j["winner"]["efforts"];
+        result.sliding_efforts = {.torque_n_m = optional_from_json(efforts.at("total_torque_n_m")),
+                                  .force_n = optional_from_json(efforts.at("total_force_n"))};
+      }
     }
     check_sizes(result);
     return result;

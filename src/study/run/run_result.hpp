@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/tracking/response.hpp"
 #include "study/run/candidate_pool.hpp"
 #include "study/run/run_plan.hpp"
 #include "study/statistics/summary.hpp"
@@ -50,6 +51,12 @@ struct RunResult {
   std::optional<std::size_t> winner;  // index into judged; nothing if none has an objective
   Evaluation test;                    // the winner's on the test set
   ErrorSummary test_summary;
+  // The winner's errors in motion on the test set. Nothing in results of version 1.0, of a
+  // comparison's cells and of runs without an arm.
+  std::optional<MotionSummary> test_motion;
+  // The winner's efforts if a joint slides; otherwise nothing, because the metric total_torque has
+  // them. Nothing in results of version 1.0.
+  EffortTotals sliding_efforts;
   std::vector<std::string> variable_names;
   // The variables that are not real, with name, type and, for categories, words. Their bounds are
   // not recorded: those of a category follow from its words.
@@ -78,6 +85,9 @@ const DecisionVariable* find_discrete(const RunResult& result, std::size_t varia
 // Returns the error above which a test case has failed: kFailureError_m for an arm, infinity for a
 // function.
 double get_failure_error(const RunResult& result);
+
+// Returns the winner's efforts. Those of version 1.0 count sliding joints as if they turned.
+EffortTotals get_effort_totals(const RunResult& result);
 
 // Returns whether every constraint is met and every case has an error. Only then may a report call
 // the design feasible.

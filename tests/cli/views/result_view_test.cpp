@@ -34,6 +34,29 @@ TEST_F(ResultView, AWinnerHasWholeNumbersForIntegersWithAndWithoutItsFile) {
   }
 }
 
+TEST(SummaryTable, HasALinePerErrorThatWasMeasured) {
+  const ErrorSummary summary = summarize(std::vector<double>{0.0002, 0.0004}, 0.1);
+  const auto show = [&](const std::optional<MotionSummary>& motion) {
+    Table table = make_summary_table(summary, motion);
+    add_efforts({.torque_n_m = 120, .force_n = 400}, table);
+    return table.format(Style(false), 2);
+  };
+  const std::string all =
+      show(MotionSummary{.moving_rms_m = 0.00085, .moving_peak_m = 0.0053, .start_up_m = 0.112});
+  EXPECT_THAT(all, ContainsRegex("\n? *mean error at rest +0.3000 mm\n"));
+  EXPECT_THAT(all, ContainsRegex("\n  error while moving +RMS 0.8500 mm, peak 5.300 mm\n"));
+  EXPECT_THAT(all, ContainsRegex("\n  error after start-up +up to 112.0 mm\n"));
+  EXPECT_THAT(all, ContainsRegex("\n  total torque +120.0 N m\n  total force +400.0 N\n"));
+  const std::string path =
+      show(MotionSummary{.moving_rms_m = 0.00085, .moving_peak_m = 0.0053, .start_up_m = {}});
+  EXPECT_THAT(path, testing::Not(testing::HasSubstr("rest")));
+  EXPECT_THAT(path, testing::Not(testing::HasSubstr("start-up")));
+  EXPECT_THAT(path, testing::HasSubstr("error while moving"));
+  const std::string of_version_1 = show({});
+  EXPECT_THAT(of_version_1, ContainsRegex("mean error +0.3000 mm\n"));
+  EXPECT_THAT(of_version_1, testing::Not(testing::HasSubstr("moving")));
+}
+
 TEST(FormatJson, AVariableIsAWholeNumberAWordOrANumber) {
   DecisionVariable variable = {.name = "v", .unit = "", .lower = 0, .upper = 9, .start = 0};
   EXPECT_EQ(to_json_value(variable, 2).dump(), "2.0");

@@ -37,6 +37,19 @@ TEST(Control, WithoutATableThereIsThePidOfTheStart) {
   EXPECT_THAT(loaded.resolved_json, testing::Not(HasSubstr("\"controller\"")));
 }
 
+TEST(Control, StartsEmptyAsVersion1DidUnlessTheProblemSaysOtherwise) {
+  const LoadedProblem plain = load_with_gains({});
+  EXPECT_EQ(plain.tracking()->config().task.control_start, ControlStart::empty);
+  const LoadedProblem empty = load_with_gains({"control.start=empty"});
+  EXPECT_EQ(empty.resolved_json, plain.resolved_json) << "a record of version 1.0 lacks the key";
+  const LoadedProblem held = load_with_gains({"control.start=gravity"});
+  EXPECT_EQ(held.tracking()->config().task.control_start, ControlStart::gravity);
+  EXPECT_THAT(held.resolved_json, HasSubstr("\"start\":\"gravity\""));
+  EXPECT_THAT(usage_error_of([] { load_with_gains({"control.start=full"}); }),
+              HasSubstr("unknown control.start 'full'"));
+  EXPECT_EQ(load_problem("robot").tracking()->config().task.control_start, ControlStart::gravity);
+}
+
 class EveryControl : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryControl, TakesTheStartOver) {

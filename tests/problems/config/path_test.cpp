@@ -133,6 +133,33 @@ INSTANTIATE_TEST_SUITE_P(
         BadPath{"x_m,y_m,z_m,qw,qx,qy,qz\n1,2,3,0,0,0,0.1\n",
                 "p.csv:2: the quaternion has the length 0.1; it must be a unit quaternion"}));
 
+TEST(Path, ThatTurnsTheToolMakesItsOrientationCount) {
+  const ProblemFolder folder;
+  const auto load = [&](const std::string& task) {
+    folder.write("p.toml",
+                 "kind = 'tracking'\n[robot]\nurdf = 'irb4600_six'\n[variables]\n"
+                 "start = 'proposed'\n[task]\n" +
+                     task +
+                     "[path]\nkind = 'points'\n"
+                     "[[path.point]]\nposition_m = [1.4, 0, 0.9]\nrpy_rad = [0, 3.1, 0]\n"
+                     "[[path.point]]\nposition_m = [1.4, 0.3, 0.9]\nrpy_rad = [0, 3.1, 0.2]\n");
+    return folder.load("p.toml");
+  };
+  const LoadedProblem open = load("");
+  EXPECT_EQ(open.tracking()->config().task.tool.orientation, ToolOrientation::pose);
+  EXPECT_THAT(open.resolved_json, testing::HasSubstr("\"orientation\":\"pose\""));
+  EXPECT_EQ(load("orientation = 'pointing'\n").tracking()->config().task.tool.orientation,
+            ToolOrientation::pointing);
+  EXPECT_THAT(
+      folder.shorten(usage_error_of([&] { load("orientation = 'free'\n"); })),
+      testing::AllOf(testing::StartsWith("p.toml:9: path.kind is 'points'; the path says how "
+                                         "the tool is turned, which does not count where "
+                                         "task.orientation is \"free\""),
+                     testing::HasSubstr("or leave it out")));
+  EXPECT_THAT(usage_error_of([&] { load("kinematics = 'palletiser'\n"); }),
+              testing::HasSubstr("the closed form of a palletiser says nothing of that"));
+}
+
 class BadPathTable : public testing::TestWithParam<BadPath> {};
 
 TEST_P(BadPathTable, IsRefusedWithItsKey) {

@@ -109,6 +109,7 @@ TEST_F(RunPage, HasWhatTheContractSaysForAnArm) {
   expect_interface(page["arm"]["sweep"], {"Sweep"});
   expect_interface(page["arm"]["designs"][0], {"DesignInfo"});
   expect_interface(page["headline"], {"Headline"});
+  expect_interface(page["headline"]["motion"], {"MotionErrors"});
   const json& health = page["arm"]["health"];
   expect_interface(health, {"Health"});
   expect_interface(health["joints"][0], {"JointHealth"});

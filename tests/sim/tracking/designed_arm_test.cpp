@@ -10,6 +10,7 @@
 #include "base/expect_error.hpp"
 #include "sim/engines/articulated/articulated_arm.hpp"
 #include "sim/engines/ode/ode_arm.hpp"
+#include "sim/tracking/design.hpp"
 
 namespace armwright {
 namespace {
@@ -33,6 +34,26 @@ RobotModel make_one_link(const Inertial& body, const Vector3d& tip_m) {
   model.links.push_back({"link", body, {}});
   model.tip_pose.translation() = tip_m;
   return model;
+}
+
+TEST(EffortTotals, KeepNewtonMetresAndNewtonsApart) {
+  RobotModel robot;
+  robot.joints.resize(3);
+  robot.joints[1].kind = JointKind::prismatic;
+  ArmDesign design;
+  design.joints = {{{}, {-70, 50}}, {{}, {-300, 400}}, {{}, {-10, 50}}};
+  const EffortTotals mixed = calc_effort_totals(design, robot);
+  EXPECT_EQ(mixed.torque_n_m, 120);
+  EXPECT_EQ(mixed.force_n, 400);
+  EXPECT_EQ(calc_total_effort(design), 520);  // as objectives count it
+  robot.joints[1].kind = JointKind::revolute;
+  EXPECT_EQ(calc_effort_totals(design, robot).torque_n_m, 520);
+  EXPECT_EQ(calc_effort_totals(design, robot).force_n, std::nullopt);
+  for (Joint& joint : robot.joints) {
+    joint.kind = JointKind::prismatic;
+  }
+  EXPECT_EQ(calc_effort_totals(design, robot).torque_n_m, std::nullopt);
+  EXPECT_EQ(calc_effort_totals(design, robot).force_n, 520);
 }
 
 TEST(StretchedLink, OfAHomogeneousBoxIsTheLongerAndWiderBox) {

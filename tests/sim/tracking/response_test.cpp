@@ -132,6 +132,64 @@ TEST(Response, OnlyMovesHaveOne) {
   EXPECT_FALSE(find_tip_move(make_table(10, 40), 0, too_few, kSamplePeriod_s));
 }
 
+// Two segments: a move of 3 periods with a rest of 2, then a move of 2 with a rest of 3. The last
+// period of each move ends with the target's arrival, so it counts as rest.
+class MovingTip : public testing::Test {
+ protected:
+  MovingTip() {
+    Segment second = make_table(2, 3).segments[0];
+    second.first_step = table_.steps;
+    table_.steps += second.steps;
+    table_.segments.push_back(second);
+  }
+  TargetTable table_ = make_table(3, 2);
+  std::vector<double> errors_m_ = {0.1, 0.4, 0.7, 0.2, 0.1, 0.03, 0.5, 0.6, 0.01, 0.02};
+};
+
+TEST_F(MovingTip, CountsMovesFromTheFirstCountedPointOn) {
+  const auto later = measure_motion({}, table_, errors_m_).summarize();
+  EXPECT_DOUBLE_EQ(later->moving_rms_m, 0.03);
+  EXPECT_EQ(later->moving_peak_m, 0.03);
+  EXPECT_EQ(later->start_up_m, 0.7);  // the move and the rest of the first segment
+  TrackingTask all;
+  all.count_first_point = true;
+  const auto both = measure_motion(all, table_, errors_m_).summarize();
+  EXPECT_DOUBLE_EQ(both->moving_rms_m, std::sqrt((0.01 + 0.16 + 0.0009) / 3));
+  EXPECT_EQ(both->moving_peak_m, 0.4);
+  EXPECT_EQ(both->start_up_m, 0.7);
+}
+
+TEST_F(MovingTip, OfSeveralCasesIsThatOfAllTheirPeriods) {
+  MotionErrors sum = measure_motion({}, table_, errors_m_);
+  std::vector<double> other = errors_m_;
+  other[0] = 0.9;
+  other[5] = 0.05;
+  sum.add(measure_motion({}, table_, other));
+  const auto summary = sum.summarize();
+  EXPECT_DOUBLE_EQ(summary->moving_rms_m, std::sqrt((0.0009 + 0.0025) / 2));
+  EXPECT_EQ(summary->moving_peak_m, 0.05);
+  EXPECT_EQ(summary->start_up_m, 0.9);
+  EXPECT_FALSE(MotionErrors().summarize());
+}
+
+TEST_F(MovingTip, OfAContinuousPathHasAllSamplesAndNoStart) {
+  table_.segments.clear();
+  table_.steps = 0;
+  for (int k = 0; k < 4; ++k) {
+    Segment sample = make_table(0, 1).segments[0];
+    sample.is_sample = true;
+    sample.first_step = table_.steps++;
+    table_.segments.push_back(sample);
+  }
+  TrackingTask task;
+  task.count_first_point = true;
+  const std::vector<double> errors_m = {0.5, 0.1, 0.1, 0.3};
+  const auto summary = measure_motion(task, table_, errors_m).summarize();
+  EXPECT_DOUBLE_EQ(summary->moving_rms_m, 0.3);
+  EXPECT_EQ(summary->moving_peak_m, 0.5);
+  EXPECT_FALSE(summary->start_up_m);
+}
+
 TEST(Response, ALaterMoveBeginsWhereTheTipWas) {
   TargetTable table = make_table(10, 40);
   Segment back = table.segments[0];

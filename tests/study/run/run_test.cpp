@@ -94,7 +94,7 @@ TEST(EvaluateDesign, InBatchesItIsWhatCaseByCaseGives) {
   const TestSet set = problem->get_set("test/2");
   for (const unsigned jobs : {1U, 3U}) {
     StopSignal stop;
-    const auto results = evaluate_design(*problem, design, set, 5, 70, jobs, stop);
+    const auto results = evaluate_design(*problem, design, set, 5, 70, jobs, false, stop);
     ASSERT_TRUE(results);
     ASSERT_EQ(results->size(), 70u);
     for (std::uint64_t i = 0; i < 70; ++i) {
@@ -102,8 +102,59 @@ TEST(EvaluateDesign, InBatchesItIsWhatCaseByCaseGives) {
           << i;
     }
     stop.request(StopReason::interrupted);
-    EXPECT_FALSE(evaluate_design(*problem, design, set, 5, 70, jobs, stop));
+    EXPECT_FALSE(evaluate_design(*problem, design, set, 5, 70, jobs, false, stop));
   }
+}
+
+// The distances of all four test cases, measured again one by one.
+TEST_F(RunTest, TheWinnersMotionIsThatOfItsTestCases) {
+  const RunPlan plan = make_small_plan();
+  const auto result = run(plan, "a");
+  ASSERT_TRUE(result && result->test_motion);
+  const TrackingProblem& problem = *plan.problem.tracking();
+  const ArmDesign design = problem.make_design(result->judged[*result->winner].candidate.x);
+  MotionErrors errors;
+  for (std::uint64_t number = 0; number < 4; ++number) {
+    const TestSet set = problem.get_set("test/2");
+    const TrackingResult motion = problem.track(design, set, number, {.error_series = true});
+    EXPECT_EQ(motion.mean_error_m, result->test.case_errors[number]);
+    errors.add(measure_motion(problem.config().task,
+                              problem.setup().make_targets(set.make_case(number)),
+                              motion.error_series_m));
+  }
+  const MotionSummary expected = errors.summarize().value();
+  EXPECT_EQ(result->test_motion->moving_rms_m, expected.moving_rms_m);
+  EXPECT_EQ(result->test_motion->moving_peak_m, expected.moving_peak_m);
+  EXPECT_EQ(result->test_motion->start_up_m, expected.start_up_m);
+  EXPECT_GT(expected.moving_peak_m, expected.moving_rms_m);
+  EXPECT_EQ(get_effort_totals(*result).torque_n_m, calc_total_effort(design));
+  EXPECT_THAT(read_result("a"), testing::Not(HasSubstr("total_force_n")));
+}
+
+TEST_F(RunTest, CellsAndRunsOfVersion1AreNotMeasured) {
+  StopSignal stop;
+  const auto cell = execute_run(
+      {make_small_plan(), temporary_ / "cell", 2, {}, DerivedFiles::winner}, stop, observer_);
+  EXPECT_FALSE(cell->test_motion);
+  EXPECT_THAT(read_result("cell"), testing::Not(HasSubstr("motion")));
+  RunPlan old = make_small_plan();
+  old.selection.most = 0;
+  EXPECT_FALSE(run(old, "old")->test_motion);
+  EXPECT_THAT(read_result("old"), testing::Not(HasSubstr("motion")));
+}
+
+// As those of --robot, whose problem has got the setting since.
+TEST_F(RunTest, ARunOfVersion1KeepsControllersThatStartEmpty) {
+  RunPlan old = make_small_plan("random", 4);
+  old.selection.most = 0;
+  run(old, "old");
+  const LoadedProblem now =
+      load_problem("q1-complex", std::vector<std::string>{"control.start=gravity"});
+  EXPECT_THAT(find_old_settings(temporary_ / "old", now, {}),
+              testing::ElementsAre("control.start=empty"));
+  EXPECT_THAT(
+      find_old_settings(temporary_ / "old", now, std::vector<std::string>{"control.start=gravity"}),
+      testing::IsEmpty());
 }
 
 TEST_F(RunTest, ResultsDoNotDependOnTheNumberOfThreads) {
@@ -179,6 +230,25 @@ TEST_F(RunTest, AResultReadsBackTheSame) {
   const auto result = run(make_small_plan(), "a");
   ASSERT_TRUE(result);
   EXPECT_EQ(to_json(parse_result(read_result("a"), "result.json")), to_json(*result));
+}
+
+TEST(RunResult, OfAnArmThatSlidesHasItsForceApart) {
+  RunResult result;
+  result.objectives = {{"error", "m"}};
+  result.metric_names = {"total_torque"};
+  result.judged.emplace_back();
+  result.winner = 0;
+  result.test.metrics = {520};
+  EXPECT_EQ(get_effort_totals(result).torque_n_m, 520);
+  EXPECT_EQ(get_effort_totals(result).force_n, std::nullopt);
+  result.sliding_efforts = {.torque_n_m = 120, .force_n = 400};
+  result.test_motion = {.moving_rms_m = 0.1, .moving_peak_m = 0.3, .start_up_m = {}};
+  const RunResult read = parse_result(to_json(result), "result.json");
+  EXPECT_EQ(get_effort_totals(read).torque_n_m, 120);
+  EXPECT_EQ(get_effort_totals(read).force_n, 400);
+  EXPECT_EQ(read.test_motion->moving_peak_m, 0.3);
+  EXPECT_EQ(read.test_motion->start_up_m, std::nullopt);
+  EXPECT_EQ(to_json(read), to_json(result));
 }
 
 TEST_F(RunTest, FoldersAreNumberedAndNeverReused) {

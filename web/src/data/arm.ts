@@ -44,7 +44,8 @@ export interface Robot {
 export interface DesignInfo {
   id: string;
   name: string; // "winner", "base controllers", "published"
-  total_torque_n_m: number | null;
+  total_torque_n_m: number | null; // of the joints that turn; null if none does
+  total_force_n: number | null; // of the joints that slide; null if none does
   effort_limits: [number, number][]; // one per joint
 }
 

@@ -54,12 +54,21 @@ export interface Headline {
   started: string; // "2026-01-31T12:00:00Z", or "" if it is not recorded
   evaluations: number; // of training
   cases: number; // simulated in training
-  value: number | null; // the winner's on the test set: an arm's mean error, or the objective
+  value: number | null; // the winner's on the test set: an arm's mean error at rest, or the objective
   quantity: Quantity | null; // of `value`
   failures: number | null; // test cases that an arm failed
   test_cases: number | null;
-  total_torque_n_m: number | null;
+  total_torque_n_m: number | null; // of the joints that turn; null if none does
+  total_force_n: number | null; // of the joints that slide; null if none does
+  motion: MotionErrors | null; // null if it was not measured, as by version 1.0
   times: RunTimes | null; // null if the run has none, as runs of version 1.0
+}
+
+// The winner's distances from the moving target on the test set (docs/objectives.md).
+export interface MotionErrors {
+  error_while_moving_rms_m: number;
+  error_while_moving_peak_m: number;
+  error_after_start_up_m: number | null; // null for a continuous path
 }
 
 // How long a run took, over the lives of its process that were not killed.
@@ -153,7 +162,8 @@ export interface ArmEvidence {
     worst_m: number | null;
     failures: number;
     cases: number;
-    total_torque_n_m: number;
+    total_torque_n_m: number | null;
+    total_force_n: number | null;
     published_mean_m: number | null;
     published_torque_n_m: number | null;
     where: string;

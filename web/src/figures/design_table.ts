@@ -2,14 +2,17 @@
 import type { ArmEvidence, RunData } from '../data';
 import type { Column, TableItem, Value } from '../model';
 import { kMillimetres } from '../numbers';
-import { is_number, times } from './quantities';
+import { times } from './quantities';
 
 export function make_design_table(arm: ArmEvidence): TableItem | null {
   if (arm.parameters.length === 0) {
     return null;
   }
   const some_at_bound = arm.parameters.some((row) => row.at_bound !== '');
-  const total: Value[] = ['total torque', 'N m', ...arm.designs.map((design) => design.total_torque_n_m), 'sum', ''];
+  const totals: Value[][] = [
+    ['total torque', 'N m', ...arm.designs.map((design) => design.total_torque_n_m), 'sum', ''],
+    ['total force', 'N', ...arm.designs.map((design) => design.total_force_n), 'sum', ''],
+  ];
   return {
     kind: 'table',
     id: 'design-table',
@@ -17,7 +20,8 @@ export function make_design_table(arm: ArmEvidence): TableItem | null {
     caption:
       'All numbers of the winner beside those of the other designs. Only the numbers of kind "variable" were optimized. ' +
       (some_at_bound ? 'If a number of the winner is at a bound, the best value may be beyond it: the bound may be too tight. ' : '') +
-      'The total torque is a sum over the joints: of the two limits of each joint it takes the one with the larger magnitude.',
+      'The total torque is a sum over the joints that turn, the total force one over those that slide: of the two limits of each joint ' +
+      'they take the one with the larger magnitude.',
     table: {
       columns: [
         { label: 'number' },
@@ -34,7 +38,7 @@ export function make_design_table(arm: ArmEvidence): TableItem | null {
           row.is_variable ? 'variable' : 'fixed',
           row.at_bound,
         ]),
-        ...(arm.designs.some((design) => is_number(design.total_torque_n_m)) ? [total] : []),
+        ...totals.filter((row) => row.some((value) => typeof value === 'number')),
       ],
     },
   };
@@ -44,6 +48,7 @@ export function make_results_table(data: RunData, arm: ArmEvidence): TableItem |
   if (arm.results.length === 0) {
     return null;
   }
+  const slides = arm.results.some((row) => row.total_force_n !== null);
   const has_published = arm.results.some((row) => row.published_mean_m !== null || row.published_torque_n_m !== null);
   const millimetres = (label: string): Column => ({ label, unit: 'mm', numeric: true });
   const name = (id: string) => arm.designs.filter((design) => design.id === id)[0]?.name ?? id;
@@ -57,7 +62,7 @@ export function make_results_table(data: RunData, arm: ArmEvidence): TableItem |
     id: 'results-table',
     title: 'Result',
     caption:
-      `The positional errors of each design${where}: the mean, the median, the error below which 95 % of the cases stay, and the worst case. ` +
+      `The positional errors of each design at rest${where}: the mean, the median, the error below which 95 % of the cases stay, and the worst case. ` +
       (has_published
         ? 'The published columns have the values that the thesis printed for the same design. The last column says where.'
         : 'No results of these designs are published.') +
@@ -73,6 +78,7 @@ export function make_results_table(data: RunData, arm: ArmEvidence): TableItem |
         { label: 'failures', numeric: true },
         { label: 'cases', numeric: true },
         { label: 'total torque', unit: 'N m', numeric: true, digits: 6 },
+        ...(slides ? [{ label: 'total force', unit: 'N', numeric: true, digits: 6 }] : []),
         ...(has_published ? [{ label: 'published torque', unit: 'N m', numeric: true, digits: 6 }, { label: 'where' }] : []),
       ],
       rows: arm.results.map((row) => [
@@ -85,6 +91,7 @@ export function make_results_table(data: RunData, arm: ArmEvidence): TableItem |
         row.failures,
         row.cases,
         row.total_torque_n_m,
+        ...(slides ? [row.total_force_n] : []),
         ...(has_published ? [row.published_torque_n_m, row.where] : []),
       ]),
     },

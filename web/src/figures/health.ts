@@ -85,16 +85,36 @@ function make_failure_tile(data: RunData): Tile | null {
   };
 }
 
-function make_torque_tile(data: RunData): Tile | null {
-  const total = data.headline.total_torque_n_m;
+// Returns the tiles of the errors beside those at rest, as far as they were measured.
+function make_motion_tiles(data: RunData): Tile[] {
+  const { motion } = data.headline;
+  if (motion === null) {
+    return [];
+  }
+  const millimetres = (error_m: number): string => format_number(error_m * kMillimetres, 3) + ' mm';
+  const moving: Tile = {
+    label: 'Error while moving',
+    value: `RMS ${millimetres(motion.error_while_moving_rms_m)}`,
+    detail: `peak ${millimetres(motion.error_while_moving_peak_m)}; distance to the moving target`,
+  };
+  const start = motion.error_after_start_up_m;
+  return start === null
+    ? [moving]
+    : [moving, { label: 'Error after start-up', value: `up to ${millimetres(start)}`, detail: "until the target's first rest ends" }];
+}
+
+function make_effort_tile(data: RunData, label: string, key: 'total_torque_n_m' | 'total_force_n', unit: string): Tile | null {
+  const total = data.headline[key];
   if (!is_number(total)) {
     return null;
   }
-  const before = find_row(data, 'base')?.total_torque_n_m;
+  const before = find_row(data, 'base')?.[key];
+  const joints =
+    key === 'total_force_n' ? 'the joints that slide' : data.headline.total_force_n === null ? 'all joints' : 'the joints that turn';
   return {
-    label: 'Total torque',
-    value: format_number(total) + ' N m',
-    detail: is_number(before) ? `${get_base_name(data)}: ${format_number(before)} N m` : 'sum of the effort limits of all joints',
+    label,
+    value: `${format_number(total)} ${unit}`,
+    detail: is_number(before) ? `${get_base_name(data)}: ${format_number(before)} ${unit}` : `sum of the effort limits of ${joints}`,
   };
 }
 
@@ -119,8 +139,10 @@ function make_tiles(data: RunData): Tile[] {
   const { cases, evaluations } = data.headline;
   const tiles: (Tile | null)[] = [
     make_value_tile(data),
+    ...make_motion_tiles(data),
     make_failure_tile(data),
-    make_torque_tile(data),
+    make_effort_tile(data, 'Total torque', 'total_torque_n_m', 'N m'),
+    make_effort_tile(data, 'Total force', 'total_force_n', 'N'),
     {
       label: data.arm === null ? 'Evaluated cases' : 'Simulations',
       value: String(cases),

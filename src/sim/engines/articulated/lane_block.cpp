@@ -153,6 +153,8 @@ void LaneBlock<T>::place(std::size_t slot, std::size_t job) {
   slots_[slot] = job;
   const TrackingJob& one = jobs_[job];
   T* numbers = state(slot);
+  const auto first_control = static_cast<std::size_t>(calc_state_packs(static_cast<int>(joints_)));
+  std::vector<double> held(static_cast<std::size_t>(controller_.states));
   for (std::size_t i = 0; i < joints_; ++i) {
     const auto set = [&](StateField field, double value) {
       numbers[(field * joints_ + i) * lanes()] = static_cast<T>(value);
@@ -163,9 +165,14 @@ void LaneBlock<T>::place(std::size_t slot, std::size_t job) {
     set(kIntegrating, 1);
     set(kEffortMin, drive.limits.min);
     set(kEffortMax, drive.limits.max);
+    if (!one.targets->holding_effort.empty()) {
+      controller_.hold(one.targets->holding_effort[i], drive.limits, drive.gains, held.data());
+      for (std::size_t k = 0; k < held.size(); ++k) {
+        numbers[(first_control + k * joints_ + i) * lanes()] = static_cast<T>(held[k]);
+      }
+    }
     const std::size_t first_gain =
-        static_cast<std::size_t>(calc_state_packs(static_cast<int>(joints_))) +
-        static_cast<std::size_t>(controller_.states) * joints_ + i;
+        first_control + static_cast<std::size_t>(controller_.states) * joints_ + i;
     for (std::size_t gain = 0; gain < controller_.gains.size(); ++gain) {
       numbers[(first_gain + gain * joints_) * lanes()] = static_cast<T>(drive.gains[gain]);
     }

@@ -206,10 +206,15 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     set(kIntegrating, V(1));
     set(kEffortMin, V(drive.effort_min));
     set(kEffortMax, V(drive.effort_max));
-    int place = calc_state_packs(n) + controller.states * n + i;
-    for (const Number& gain : drive.gains) {
-      state[static_cast<std::size_t>(place)] = V(gain);
-      place += n;
+    V* const control = state.data() + calc_state_packs(n) + i;
+    V* const gains = control + controller.states * n;
+    for (std::size_t gain = 0; gain < drive.gains.size(); ++gain) {
+      gains[static_cast<int>(gain) * n] = V(drive.gains[gain]);
+    }
+    if (!job.targets->holding_effort.empty()) {
+      const auto hold = controllers::find_hold<V>(controller.law, controllers::AllLaws{});
+      hold(V(job.targets->holding_effort[static_cast<std::size_t>(i)]), V(drive.effort_min),
+           V(drive.effort_max), {gains, n}, {control, n});
     }
   }
   const std::vector<Joint>& joints = own.robot().joints;
