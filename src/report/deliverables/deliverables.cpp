@@ -13,7 +13,7 @@
 #include "report/deliverables/ros2_control.hpp"
 #include "report/formats/export_files.hpp"
 #include "report/formats/run_traces.hpp"
-#include "sim/robot/urdf_effort_writer.hpp"
+#include "sim/robot/urdf_writer.hpp"
 #include "sim/tracking/designed_arm.hpp"
 #include "study/run/run.hpp"
 
