@@ -40,6 +40,7 @@ Range read_range(const XMLElement& limit, bool prismatic, const UrdfXml& xml) {
 UrdfPlacement JointChecker::read(const XMLElement& element, const UrdfJoint& joint) {
   xml_.set_context(fmt::format("joint '{}'", joint.name));
   UrdfPlacement placement;
+  placement.motion.name = joint.name;  // also if the rest cannot be read
   const bool has_known_parts = faults_.attempt([&] {
     xml_.check_names(element,
                      {"parent", "child", "origin", "axis", "limit", "dynamics", "mimic",

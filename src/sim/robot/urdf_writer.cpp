@@ -63,7 +63,9 @@ class Tags {
         quote = c;
       }
     }
-    tag.closes = !tag.opens || xml_[at_ - 1] == '/';
+    const bool is_whole = xml_[at_ - 1] == '/';
+    tag.closes = !tag.opens || is_whole;
+    tag.opens = tag.opens || is_whole;  // the parser takes "</NAME .../>" for an element
     tag.end = ++at_;
     return tag;
   }
@@ -213,14 +215,19 @@ std::string make_comment(std::string_view text) {
   return comment + "\n-->\n";
 }
 
+// Returns the place after the declarations (<?...?>) at the beginning.
 std::size_t find_beginning(std::string_view xml) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   const std::size_t start = xml.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-  const std::size_t first = xml.find_first_not_of(kXmlBlanks, start);
-  if (first == std::string_view::npos || !xml.substr(first).starts_with("<?xml")) {
+  std::size_t end = start;
+  for (std::size_t at = xml.find_first_not_of(kXmlBlanks, end);
+       at != std::string_view::npos && xml.substr(at).starts_with("<?");
+       at = xml.find_first_not_of(kXmlBlanks, end)) {
+    end = xml.find("?>", at + 2) + 2;
+  }
+  if (end == start) {
     return start;
   }
-  const std::size_t end = xml.find("?>", start) + 2;
   const std::size_t text = xml.find_first_not_of(" \t\r", end);
   return text != std::string_view::npos && xml[text] == '\n' ? text + 1 : end;
 }

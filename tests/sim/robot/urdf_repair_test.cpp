@@ -341,6 +341,23 @@ TEST(UrdfFaults, OneAloneIsToldAsItself) {
               StartsWith("arm.urdf:6: joint 'swing' moves link 'upper', which has no mass; "));
 }
 
+// A misspelt part hides the rest of its joint, and its link's mass is told all the same.
+TEST(UrdfFaults, NameTheJointOfAMisspeltPart) {
+  Parts parts;
+  parts.upper = "";
+  std::string xml = make_blemished(parts);
+  xml.replace(xml.find("<origin"), 7, "<orgin");
+  try {
+    parse_urdf(xml, "arm.urdf");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(StartsWith("arm.urdf: 2 things to mend\narm.urdf:6: joint 'swing': unknown "
+                                 "element in <joint> 'orgin'"),
+                      HasSubstr("arm.urdf:6: joint 'swing' moves link 'upper'")));
+  }
+}
+
 TEST(UrdfFaults, AfterTwentyTheyAreCounted) {
   std::string links;
   for (int i = 0; i < 25; ++i) {
@@ -457,6 +474,39 @@ TEST(AssumedMass, ChangesNoArmThatHasItsMasses) {
   Parts parts;
   parts.sensor = make_looks(kSphereShape);
   EXPECT_EQ(read(parts).links[1].inertial.mass_kg, read(parts, kRepair).links[1].inertial.mass_kg);
+}
+
+// Whatever one byte makes of a file with blemishes: if it is read, its mended text is read strictly.
+TEST(ApplyRepairs, MendsWhateverIsRead) {
+  Parts parts;
+  parts.foot = make_looks(kSphereShape, "<material name=\"nobody\"/>") +
+               "<inertial><mass value=\"0\"/>" + write_tensor("1", "1", "1") + "</inertial>";
+  parts.upper = "<inertial><mass value=\"9\"/>" + write_tensor("1", "3.1", "2") + "</inertial>";
+  parts.lower = "";
+  parts.sensor = make_looks("<box size=\"0 0 0\"/>");
+  const std::string xml = make_blemished(parts);
+  std::size_t read_count = 0;
+  for (std::size_t at = 0; at < xml.size(); ++at) {
+    for (const char byte : {'<', '/', '"', '0', '-', '9'}) {
+      std::string changed = xml;
+      changed[at] = byte;
+      RobotModel robot;
+      try {
+        robot = parse_urdf(changed, "arm.urdf", {.repair = true});
+      } catch (const Error&) {
+        continue;
+      }
+      ++read_count;
+      const std::string mended =
+          apply_repairs(changed, "arm.urdf", robot.reading.repairs, "by a test");
+      try {
+        EXPECT_THAT(parse_urdf(mended, "mended.urdf").reading.repairs, IsEmpty()) << mended;
+      } catch (const Error& error) {
+        ADD_FAILURE() << error.what() << "\n" << mended;
+      }
+    }
+  }
+  EXPECT_GT(read_count, xml.size() / 2) << "most changes are refused";
 }
 
 TEST(ApplyRepairs, ChangesNothingElse) {
