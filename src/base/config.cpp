@@ -384,8 +384,11 @@ template void ConfigTable::settle(const Setting<int>&, const int&) const;
 template void ConfigTable::settle(const Setting<std::int64_t>&, const std::int64_t&) const;
 template void ConfigTable::settle(const Setting<double>&, const double&) const;
 template void ConfigTable::settle(const Setting<std::string>&, const std::string&) const;
+template void ConfigTable::settle(const Setting<bool>&, const bool&) const;
 template void ConfigTable::settle(const Setting<std::vector<double>>&,
                                   const std::vector<double>&) const;
+template void ConfigTable::settle(const Setting<std::vector<std::string>>&,
+                                  const std::vector<std::string>&) const;
 
 ConfigTable ConfigTable::get_table(const SettingTable& table) const {
   const SettingTable* declared = check_declared(*node_, table);

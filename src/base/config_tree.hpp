@@ -99,7 +99,9 @@ Value make_settled(const std::string& text);
 Value make_settled(std::int64_t integer);
 Value make_settled(int integer);
 Value make_settled(double number);
+Value make_settled(bool boolean);
 Value make_settled(const std::vector<double>& numbers);
+Value make_settled(const std::vector<std::string>& texts);
 
 // Returns a copy of a value that is no table.
 Value copy_value(const Value& value);

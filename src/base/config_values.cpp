@@ -151,6 +151,22 @@ Value make_settled(double number) {
   return value;
 }
 
+Value make_settled(bool boolean) {
+  Value value;
+  value.kind = Kind::boolean;
+  value.boolean = boolean;
+  return value;
+}
+
+Value make_settled(const std::vector<std::string>& texts) {
+  Value value;
+  value.kind = Kind::array;
+  for (const std::string& text : texts) {
+    value.items.push_back(make_settled(text));
+  }
+  return value;
+}
+
 Value make_settled(const std::vector<double>& numbers) {
   Value value;
   value.kind = Kind::array;

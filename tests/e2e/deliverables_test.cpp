@@ -14,7 +14,7 @@
 #include "e2e/program.hpp"
 #include "problems/config/design_file.hpp"
 #include "sim/robot/robot_model.hpp"
-#include "sim/robot/urdf_effort_writer.hpp"
+#include "sim/robot/urdf_writer.hpp"
 #include "study/run/run.hpp"
 
 namespace armwright {

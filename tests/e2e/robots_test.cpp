@@ -95,11 +95,7 @@ INSTANTIATE_TEST_SUITE_P(E2e, GeneratedRobots, testing::Range(0, kGeneratedArms)
 class ShippedRobots : public Robots, public testing::WithParamInterface<const char*> {};
 
 TEST_P(ShippedRobots, GoFromUrdfToTunedControllersWithOneCommand) {
-  std::vector<std::string> words = {"--robot", GetParam()};
-  if (std::string(GetParam()) == "arm7_gripper") {
-    words.insert(words.begin(), {"--tip", "tool"});
-  }
-  expect_tuned(words);
+  expect_tuned({"--robot", GetParam()});
 }
 
 INSTANTIATE_TEST_SUITE_P(E2e, ShippedRobots,

@@ -1,9 +1,11 @@
 // Robots: a model has finite numbers only, masses that are positive and axes that are unit vectors.
-// As it is, and up to the first leaf at a density where its links branch or have no mass.
+// As it is, up to the first leaf at a density where its links branch or have no mass, and with
+// repairs. A file in which these are done needs none.
 #include <cmath>
 
 #include "fuzz/harness.hpp"
 #include "sim/robot/robot_model.hpp"
+#include "sim/robot/urdf_writer.hpp"
 
 namespace armwright::fuzz {
 namespace {
@@ -47,6 +49,24 @@ void check_robot(const RobotModel& robot) {
   for (const std::string& note : robot.notes) {
     check_message(note);
   }
+  for (const UrdfRepair& repair : robot.reading.repairs) {
+    check_message(repair.what);
+  }
+}
+
+// The mended text is read strictly and needs no repair.
+void check_mended(std::string_view input, const RobotModel& robot, RobotOptions options) {
+  constexpr std::size_t kMost_bytes = 100'000;  // so that the edits exceed no limit
+  if (input.size() > kMost_bytes) {
+    return;
+  }
+  const std::string mended = apply_repairs(input, "robot.urdf", robot.reading.repairs, "by a test");
+  options.repair = false;
+  RobotModel again;
+  require(is_read([&] { again = parse_urdf(mended, "mended.urdf", options); }),
+          "a mended robot is refused");
+  require(again.reading.repairs.empty(), "a mended robot needs repairs");
+  require(again.joint_count() == robot.joint_count(), "a mended robot has other joints");
 }
 
 }  // namespace
@@ -68,7 +88,14 @@ void fuzz_urdf(std::string_view input) {
   if (!whole) {
     options.density_kg_per_m3 = 2700;
     is_read([&] { check_robot(parse_urdf(input, "robot.urdf", options)); });
+    options.density_kg_per_m3 = 0;
   }
+  options.repair = true;
+  is_read([&] {
+    const RobotModel robot = parse_urdf(input, "robot.urdf", options);
+    check_robot(robot);
+    check_mended(input, robot, options);
+  });
 }
 
 }  // namespace armwright::fuzz

@@ -31,6 +31,8 @@ constexpr const char* kListExamples = R"(Examples:
   armwright list designs --json
   armwright list designs --names | head -1         # only the names, for scripts
   armwright list studies q1                        # a study: its optimizers, its problems and its cost
+  armwright list robots my.urdf                    # the arm in a file: chain, masses, limits, picture, repairs
+  armwright list robots my.urdf --write mended.urdf   # the same arm as a file that needs no repair
 
 Terms: a problem is a robot with a task, or a function, that an optimizer minimises. A design is the result: the gains
 and effort limits of all joints. An engine simulates the physics. A signal describes how the target moves between two
@@ -42,10 +44,11 @@ struct ListOptions {
   bool json = false;
   bool markdown = false;
   bool names = false;
+  RobotRequest robot;
 };
 
-ListKind find_kind(const std::string& name, const std::string& program) {
-  for (const ListKind& kind : list_kinds(program)) {
+ListKind find_kind(const std::string& name, const std::string& program, const RobotRequest& robot) {
+  for (const ListKind& kind : list_kinds(program, robot)) {
     if (kind.name == name) {
       return kind;
     }
@@ -114,8 +117,25 @@ std::string format_list(const ListKind& kind, const Style& style) {
          (is_terminal(Stream::out) ? hint : "");
 }
 
+// Refuses flags of robots for another kind, and without a robot.
+void check_robot_flags(const ListOptions& options) {
+  const RobotRequest& robot = options.robot;
+  const std::string_view flag = !robot.base.empty()       ? "--base"
+                                : !robot.tip.empty()      ? "--tip"
+                                : !robot.packages.empty() ? "--package"
+                                : !robot.write.empty()    ? "--write"
+                                                          : "";
+  if (!flag.empty() && (options.kind != "robots" || options.name.empty())) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{} is for one robot; name it: list robots FILE {} ...", flag, flag));
+  }
+}
+
 int run_list(const ListOptions& options, const Session& session) {
-  const ListKind kind = find_kind(options.kind, session.command_line.front());
+  check_robot_flags(options);
+  RobotRequest robot = options.robot;
+  robot.packages = make_absolute_packages(robot.packages);
+  const ListKind kind = find_kind(options.kind, session.command_line.front(), robot);
   const Style style = make_style(Stream::out, session.color);
   if (options.names) {
     if (options.json || options.markdown || !options.name.empty()) {
@@ -166,6 +186,14 @@ void add_list(CLI::App& app, Session& session) {
   command
       ->add_flag("--markdown", options->markdown,
                  "Print a page of documentation (problems, optimizers, settings)")
+      ->group("Output");
+  add_robot_flags(*command, options->robot.base, options->robot.tip, options->robot.packages,
+                  false);
+  command
+      ->add_option("--write", options->robot.write,
+                   "Write the robot's file without its blemishes: the same arm, which needs no\n"
+                   "repair")
+      ->type_name("FILE")
       ->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_list(*options, session); };

@@ -56,10 +56,10 @@ std::vector<ListItem> list_signals() {
 
 }  // namespace
 
-std::vector<ListKind> list_kinds(const std::string& program) {
+std::vector<ListKind> list_kinds(const std::string& program, const RobotRequest& robot) {
   return {make_problem_kind(),
           make_optimizer_kind(),
-          make_robot_kind(),
+          make_robot_kind(robot),
           make_engine_kind(),
           make_design_kind(),
           make_study_kind(program),

@@ -33,14 +33,24 @@ struct ListKind {
 
 ListKind make_problem_kind();
 ListKind make_optimizer_kind();
-ListKind make_robot_kind();
+
+// How `list robots FILE` reads the file. An empty value leaves the choice to the reader.
+struct RobotRequest {
+  std::string base, tip;
+  std::vector<std::string> packages;  // NAME=DIR
+  std::string write;                  // the file that gets the repaired robot; empty: none does
+};
+ListKind make_robot_kind(const RobotRequest& request = {});
+
 ListKind make_engine_kind(std::span<const EngineRow> table = engine_table());
 ListKind make_design_kind();
 ListKind make_study_kind(const std::string& program = "armwright");
 ListKind make_controller_kind();
 ListKind make_setting_kind();
-// `program` is this program's name as the user typed it, for the commands that texts name.
-std::vector<ListKind> list_kinds(const std::string& program = "armwright");
+// `program` is this program's name as the user typed it, for the commands that texts name. `robot`
+// is for the kind "robots".
+std::vector<ListKind> list_kinds(const std::string& program = "armwright",
+                                 const RobotRequest& robot = {});
 // Returns the names of all kinds: "problems", "optimizers", ...
 std::vector<std::string> list_kind_names();
 

@@ -122,9 +122,9 @@ std::vector<SourceRow> make_value_rows() {
       {"", "FOLDER", kFolder},
       {"", "DIR", kFolder},
   };
-  for (const char* name :
-       {"N", "ID", "KEY", "KEY=VALUE", "NAME=VALUE", "NUMBERS", "DURATION", "CASES", "KIND",
-        "KIND:K", "LABEL", "LINK", "SET:NUMBER", "TIME,MEMORY", "WIDTHxHEIGHT", "WORD"}) {
+  for (const char* name : {"N", "ID", "KEY", "KEY=VALUE", "NAME=VALUE", "NUMBERS", "DURATION",
+                           "CASES", "KIND", "KIND:K", "LABEL", "LINK", "NAME=DIR", "SET:NUMBER",
+                           "TIME,MEMORY", "WIDTHxHEIGHT", "WORD"}) {
     rows.push_back({"", name, kFree});
   }
   return rows;

@@ -10,12 +10,14 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/folder.hpp"
 #include "base/text.hpp"
 #include "base/toml_text.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "problems/config/config_files.hpp"
 #include "sim/engines/engine_table.hpp"
+#include "sim/robot/mesh_finder.hpp"
 #include "sim/tracking/physics_engine.hpp"
 #include "study/executor/mpi_transport.hpp"
 #include "study/run/run_folder.hpp"
@@ -250,6 +252,47 @@ std::string_view get_override_key(std::string_view assignment) {
   return key.substr(0, key.find_last_not_of(kBlanks) + 1);
 }
 
+void add_robot_flags(CLI::App& command, std::string& base, std::string& tip,
+                     std::vector<std::string>& packages, bool has_set) {
+  const auto name_setting = [has_set](const char* setting) {
+    return has_set ? fmt::format("; the same as\n--set {}", setting) : "";
+  };
+  command
+      .add_option("--base", base,
+                  "The link at which the arm begins (default: the robot's root)" +
+                      name_setting("robot.base=LINK"))
+      ->type_name("LINK");
+  command
+      .add_option("--tip", tip,
+                  "The link whose frame is the tool centre point (default: the end of the\n"
+                  "chain that is clearly the tool)" +
+                      name_setting("robot.tip=LINK"))
+      ->type_name("LINK");
+  command
+      .add_option("--package", packages,
+                  "The folder of a package that the robot's file names in package:// paths;\n"
+                  "repeatable" +
+                      name_setting("'robot.packages=[\"NAME=DIR\"]'"))
+      ->type_name("NAME=DIR")
+      ->allow_extra_args(false);
+}
+
+std::vector<std::string> make_absolute_packages(std::span<const std::string> packages) {
+  std::vector<std::string> absolute;
+  for (const std::string& text : packages) {
+    const auto package = parse_package(text);
+    if (!package) {
+      refuse("--package", text, "NAME=DIR, a package's name and its folder");
+    }
+    if (!folder_exists(package->second)) {
+      refuse("--package", text, "NAME=DIR with a folder that exists");
+    }
+    absolute.push_back(
+        fmt::format("{}={}", package->first, std::filesystem::absolute(package->second).string()));
+  }
+  return absolute;
+}
+
 void OverrideOptions::add_to(CLI::App& command, bool with_training) {
   command
       .add_option("--set", set,
@@ -265,16 +308,7 @@ void OverrideOptions::add_to(CLI::App& command, bool with_training) {
           "An arm of your own, a URDF or MJCF file, or a shipped one (armwright list robots);\n"
           "the same as --set robot.urdf=FILE. Without a problem, the problem is 'robot'")
       ->type_name("FILE");
-  command
-      .add_option("--base", base,
-                  "The link at which the arm begins (default: the robot's root); the same as\n"
-                  "--set robot.base=LINK")
-      ->type_name("LINK");
-  command
-      .add_option("--tip", tip,
-                  "The link whose frame is the tool centre point (default: the end of the chain,\n"
-                  "if there is only one); the same as --set robot.tip=LINK")
-      ->type_name("LINK");
+  add_robot_flags(command, base, tip, packages, true);
 }
 
 std::vector<std::string> OverrideOptions::list_flag_overrides() const {
@@ -289,6 +323,11 @@ std::vector<std::string> OverrideOptions::list_flag_overrides() const {
   }
   if (!tip.empty()) {
     overrides.push_back("robot.tip=" + quote_toml(tip));
+  }
+  if (!packages.empty()) {
+    std::vector<std::string> texts = make_absolute_packages(packages);
+    std::ranges::transform(texts, texts.begin(), [](const auto& text) { return quote_toml(text); });
+    overrides.push_back(fmt::format("robot.packages=[{}]", join(texts, ",")));
   }
   return overrides;
 }

@@ -97,14 +97,23 @@ struct EngineFlags {
   std::vector<std::string> get() const;
 };
 
-// All flags that change the problem: --set, those of the engine, and --robot, --base and --tip,
-// which stand for settings of the table [robot].
+// Adds --base, --tip and --package, which say how a robot's file is read. The values must live as
+// long as the parser. `has_set`: the command has --set, so that the help names the settings.
+void add_robot_flags(CLI::App& command, std::string& base, std::string& tip,
+                     std::vector<std::string>& packages, bool has_set);
+// Returns the values NAME=DIR of --package with absolute folders. Throws Error{usage} for a value of
+// another form and for a folder that does not exist.
+std::vector<std::string> make_absolute_packages(std::span<const std::string> packages);
+
+// All flags that change the problem: --set, those of the engine, and --robot, --base, --tip and
+// --package, which stand for settings of the table [robot].
 struct OverrideOptions {
   std::vector<std::string> set;
   EngineFlags engines;
   std::string robot;
   std::string base;
   std::string tip;
+  std::vector<std::string> packages;
 
   void add_to(CLI::App& command, bool with_training = false);
   // Returns the changes as KEY=VALUE texts, those of --set first. Throws Error{usage} if --set and

@@ -25,6 +25,7 @@ constexpr FlagSetting kFlagSettings[] = {
     {"--robot", "robot.urdf"},
     {"--base", "robot.base"},
     {"--tip", "robot.tip"},
+    {"--package", "robot.packages"},
     {"--validation-cases", "sets.validation_cases"},
 };
 

@@ -55,6 +55,9 @@ std::vector<std::string> check_paths(const LoadedProblem& problem) {
   const ReadStep step(fmt::format("the paths of problem '{}'", sanitize(problem.name)));
   const TrackingSetup& setup = problem.tracking()->setup();
   std::vector<std::string> lines;
+  for (const UrdfRepair& repair : setup.robot().reading.repairs) {
+    lines.push_back("robot: repaired: " + repair.what);
+  }
   for (const std::string& note : setup.robot().notes) {
     lines.push_back("robot: " + note);
   }

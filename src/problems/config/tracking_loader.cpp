@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "base/error.hpp"
@@ -14,6 +15,7 @@
 #include "problems/config/plant_file.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "sim/robot/mesh_file.hpp"
+#include "sim/robot/mesh_finder.hpp"
 #include "sim/tracking/elasticity.hpp"
 
 namespace armwright {
@@ -28,13 +30,24 @@ const Setting<std::string> kRobotBase{"base", "",
                                       "link that stands still (default: the root of the tree)"};
 const Setting<std::string> kRobotTip{
     "tip", "",
-    "link whose frame is the tool (default: the last link of the chain, if there is one chain)"};
+    "link whose frame is the tool (default: the end of the chain that is clearly the tool)"};
 const Setting<double> kRobotDensity{
     "density_kg_per_m3",
     {.lower = 1, .upper = 30'000},
     0,
     "density that gives links without <inertial> the mass of their shapes; 0: such links are "
     "refused"};
+const Setting<bool> kRobotRepair{
+    "repair", RobotOptions{}.repair,
+    "whether bad inertias of moving links are corrected and missing masses assumed, each with a "
+    "note (the problem robot, which --robot uses, has true); false: such files are refused"};
+const Setting<bool> kRobotMassFromShapes{
+    "mass_from_shapes", RobotOptions{}.mass_from_shapes,
+    "with robot.repair and without a density: whether missing masses are those of the shapes at "
+    "1000 kg/m3, if all can be read; false: they follow from the arm's lengths"};
+const Setting<std::vector<std::string>> kRobotPackages{
+    "packages", std::vector<std::string>{},
+    "folders of the packages in package:// paths, each NAME=DIR; DIR is relative to this file"};
 const Setting<double> kRobotMassScale{"mass_scale",
                                       {.lower = 0.01, .upper = 100},
                                       TrackingConfig{}.mass_scale,
@@ -245,6 +258,48 @@ std::filesystem::path find_plant(const ConfigTable& table, const std::filesystem
   return beside;
 }
 
+std::map<std::string, std::filesystem::path> read_packages(const ConfigTable& table) {
+  const std::vector<std::string> texts = table.get(kRobotPackages);
+  std::map<std::string, std::filesystem::path> packages;
+  std::vector<std::string> settled;
+  for (const std::string& text : texts) {
+    const auto package = parse_package(text);
+    if (!package) {
+      table.refuse(kRobotPackages, "each must be NAME=DIR");
+    }
+    const std::filesystem::path folder =
+        std::filesystem::absolute(table.file().parent_path() / package->second).lexically_normal();
+    packages[package->first] = folder;
+    settled.push_back(fmt::format("{}={}", package->first, folder.string()));
+  }
+  if (texts.empty()) {
+    table.leave_out(kRobotPackages);
+  } else {
+    table.settle(kRobotPackages, settled);
+  }
+  return packages;
+}
+
+// Records what the reader of the robot chose, so that a record is read in the same way wherever its
+// files are.
+void settle_reading(const ConfigTable& table, const RobotReading& reading) {
+  if (reading.is_tip_proposed) {
+    table.settle(kRobotTip, reading.tip);
+  }
+  if (!table.get(kRobotRepair)) {
+    table.leave_out(kRobotRepair);
+  }
+  const bool from_shapes = reading.density_kg_per_m3 > 0 && !table.has(kRobotDensity);
+  if (from_shapes) {
+    table.settle(kRobotDensity, reading.density_kg_per_m3);
+  }
+  if (reading.assumed_links.empty() || reading.density_kg_per_m3 > 0) {
+    table.leave_out(kRobotMassFromShapes);
+  } else {
+    table.settle(kRobotMassFromShapes, false);
+  }
+}
+
 // Returns the robot that [robot] describes, with the masses of its file, and its plant's file, which
 // may be empty.
 std::pair<RobotModel, std::filesystem::path> load_robot(const ConfigTable& table,
@@ -258,9 +313,13 @@ std::pair<RobotModel, std::filesystem::path> load_robot(const ConfigTable& table
   if (!options.dynamics) {
     table.leave_out(kRobotDynamics);
   }
+  options.repair = table.get(kRobotRepair);
+  options.mass_from_shapes = table.get(kRobotMassFromShapes);
+  options.packages = read_packages(table);
   const std::filesystem::path plant = find_plant(table, urdf);
   try {
     RobotModel robot = load_urdf(urdf, options);
+    settle_reading(table, robot.reading);
     add_input(loaded, urdf);
     for (const auto& [name, path] : robot.mass_files) {
       loaded.input_hashes[name] = calc_sha256_hex(read_file(path, kMeshFileLimit_bytes));
@@ -279,9 +338,10 @@ std::pair<RobotModel, std::filesystem::path> load_robot(const ConfigTable& table
 
 const SettingTable kRobotSettings{
     .key = "robot",
-    .settings = {&kRobotUrdf, &kRobotBase, &kRobotTip, &kRobotDensity, &kRobotMassScale,
-                 &kRobotDynamics, &kRobotPlant, &kRobotFrictionScale, &kRobotArmatureScale,
-                 &kRobotStiffnessScale, &kRobotArmatureShare, &kRobotElastic, &kRobotPropose}};
+    .settings = {&kRobotUrdf, &kRobotBase, &kRobotTip, &kRobotDensity, &kRobotRepair,
+                 &kRobotMassFromShapes, &kRobotPackages, &kRobotMassScale, &kRobotDynamics,
+                 &kRobotPlant, &kRobotFrictionScale, &kRobotArmatureScale, &kRobotStiffnessScale,
+                 &kRobotArmatureShare, &kRobotElastic, &kRobotPropose}};
 const SettingTable kTrainingSettings{.key = "training", .settings = {&kTrainingCutoff}};
 const SettingTable kMotorSettings{.key = "motors", .settings = {&kMotorsTorquePerMass}};
 

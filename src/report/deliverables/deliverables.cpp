@@ -14,7 +14,7 @@
 #include "report/formats/export_files.hpp"
 #include "report/formats/run_traces.hpp"
 #include "sim/robot/robot_model.hpp"
-#include "sim/robot/urdf_effort_writer.hpp"
+#include "sim/robot/urdf_writer.hpp"
 #include "sim/tracking/designed_arm.hpp"
 #include "study/run/run.hpp"
 

@@ -37,7 +37,7 @@ FinishedArm load_finished_arm(const std::filesystem::path& folder, std::string_v
 void write_ros2_control(const FinishedArm& arm, const std::filesystem::path& folder);
 
 // Writes the robot's own file under its own name. The effort limit of each joint becomes the larger
-// of the design's two limits (sim/robot/urdf_effort_writer.hpp). Throws Error{usage} if the winner changes
+// of the design's two limits (sim/robot/urdf_writer.hpp). Throws Error{usage} if the winner changes
 // the size of links, because the export keeps links and meshes; Error{bad_data} if the file is not
 // the one that the run used.
 void write_urdf(const FinishedArm& arm, const std::filesystem::path& folder);

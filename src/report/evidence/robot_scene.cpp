@@ -12,6 +12,7 @@
 #include "base/text.hpp"
 #include "report/evidence/page_json.hpp"
 #include "sim/robot/mesh_file.hpp"
+#include "sim/robot/mesh_finder.hpp"
 
 namespace armwright {
 namespace {
@@ -70,8 +71,8 @@ json make_joint(const Joint& joint) {
 // The meshes of a robot. Each file is read once.
 class Meshes {
  public:
-  Meshes(const std::filesystem::path& folder, std::vector<std::string>& notes)
-      : folder_(folder), notes_(notes) {}
+  Meshes(MeshFinder finder, std::vector<std::string>& notes)
+      : finder_(std::move(finder)), notes_(notes) {}
 
   // Returns the index of the mesh. If it cannot be read, returns nothing and adds a note the first
   // time.
@@ -82,14 +83,21 @@ class Meshes {
     }
     return indices_[name] = read(name);
   }
-  json take() { return std::move(meshes_); }
+  // Returns the meshes, and adds a note about those that were not found.
+  json take() {
+    if (missing_ > 0) {
+      notes_.push_back(fmt::format("Plain shapes stand for meshes: {}.",
+                                   describe_missing_meshes(missing_, example_)));
+    }
+    return std::move(meshes_);
+  }
 
  private:
   std::optional<std::size_t> read(const std::string& name) {
-    const std::optional<std::filesystem::path> file = find_mesh(name, folder_);
+    const std::optional<std::filesystem::path> file = finder_.find(name);
     if (!file) {
-      return skip(name, fmt::format("there is no such file in {} and the folders above",
-                                    sanitize(folder_.string())));
+      example_ = missing_++ == 0 ? name : example_;
+      return std::nullopt;
     }
     try {
       const TriangleMesh mesh = read_mesh(*file);
@@ -112,8 +120,10 @@ class Meshes {
     return std::nullopt;
   }
 
-  const std::filesystem::path& folder_;
+  MeshFinder finder_;
   std::vector<std::string>& notes_;
+  std::size_t missing_ = 0;
+  std::string example_;  // the name of a mesh that was not found
   std::map<std::string, std::optional<std::size_t>> indices_;
   std::size_t triangles_ = 0;
   json meshes_ = json::array();
@@ -151,8 +161,15 @@ json make_robot(const RobotModel& model, const TrackingTask& task,
                     sanitize(model.name)));
   }
 
+  if (const auto& links = model.reading.assumed_links; !links.empty()) {
+    notes.push_back(
+        fmt::format("The description of the robot {} states no mass for {}. Masses are assumed, "
+                    "and all results "
+                    "depend on them.",
+                    sanitize(model.name), sanitize(join(links, ", "))));
+  }
   const std::vector<std::vector<VisualShape>> plain = make_plain_shapes(model);
-  Meshes meshes(urdf_folder, notes);
+  Meshes meshes(MeshFinder(urdf_folder, model.reading.packages), notes);
   json bodies = json::array();
   for (std::size_t body = 0; body < body_count; ++body) {
     json shapes = make_shapes(link(body).visuals, meshes);

@@ -13,10 +13,10 @@ namespace armwright {
 
 // Returns Robot of web/src/data.ts. `model` is the arm without its load. The load of `task`, above
 // 0 kg, is a shape on the last body in its own colour (add_load()). Meshes are STL, OBJ or Collada
-// files, which find_mesh() finds from `urdf_folder`; limits are 64 MiB per file and 200 000
+// files, which MeshFinder finds from `urdf_folder`; limits are 64 MiB per file and 200 000
 // triangles per robot. A mesh that cannot be read is left out. A body whose shapes are all missing
 // gets plain shapes, and so do all bodies of a robot without any shapes. `notes` gets a whole
-// sentence for each of these cases.
+// sentence for each of these cases, and one if masses of the robot are assumed.
 nlohmann::json make_robot(const RobotModel& model, const TrackingTask& task,
                           const std::filesystem::path& urdf_folder,
                           std::vector<std::string>& notes);

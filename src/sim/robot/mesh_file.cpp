@@ -6,7 +6,6 @@
 #include <cctype>
 #include <cmath>
 #include <string_view>
-#include <system_error>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
@@ -23,11 +22,6 @@
 
 namespace armwright {
 namespace {
-
-bool is_file(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::is_regular_file(path, error);
-}
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
   throw Error(ErrorKind::bad_data, fmt::format("{}: {}", sanitize(file.string()), what));
@@ -83,41 +77,6 @@ void append(TriangleMesh& mesh, const aiMesh& part, const std::filesystem::path&
 #endif
 
 }  // namespace
-
-std::optional<std::filesystem::path> find_mesh(const std::string& name,
-                                               const std::filesystem::path& folder) {
-  constexpr std::string_view kPackage = "package://";
-  constexpr std::string_view kFile = "file://";
-  const bool in_package = name.starts_with(kPackage);
-  const std::filesystem::path wanted = name.substr(in_package                ? kPackage.size()
-                                                   : name.starts_with(kFile) ? kFile.size()
-                                                                             : 0);
-  if (wanted.empty()) {
-    return std::nullopt;
-  }
-  if (wanted.is_absolute()) {
-    return is_file(wanted) ? std::optional(wanted) : std::nullopt;
-  }
-  std::error_code error;
-  std::filesystem::path here = std::filesystem::absolute(folder, error).lexically_normal();
-  if (here.filename().empty()) {
-    here = here.parent_path();  // "a/b/" has an empty file name
-  }
-  for (;; here = here.parent_path()) {
-    if (is_file(here / wanted)) {
-      return here / wanted;
-    }
-    if (in_package && *wanted.begin() == here.filename()) {
-      const std::filesystem::path inside = here / wanted.lexically_relative(*wanted.begin());
-      if (is_file(inside)) {
-        return inside;
-      }
-    }
-    if (here == here.parent_path()) {
-      return std::nullopt;
-    }
-  }
-}
 
 #ifdef ARMWRIGHT_WITH_ASSIMP
 

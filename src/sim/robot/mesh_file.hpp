@@ -1,12 +1,9 @@
-// Finds and reads the mesh files that a URDF names. Reading needs Assimp, which is an optional
-// library of the build (ARMWRIGHT_WITH_ASSIMP).
+// Reads mesh files. Needs Assimp, which is an optional library of the build (ARMWRIGHT_WITH_ASSIMP).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
-#include <string>
 #include <vector>
 
 namespace armwright {
@@ -18,15 +15,6 @@ struct TriangleMesh {
   std::vector<float> positions;        // three coordinates per vertex, in the mesh's units
   std::vector<std::uint32_t> indices;  // three vertex numbers per triangle
 };
-
-// Returns the path of the mesh file `name`, as a URDF in `folder` refers to it, or nothing if the
-// file does not exist. The forms of `name`:
-//   package://NAME/REST     NAME/REST beside the folder or beside one of its parents, or REST in
-//                           the folder or parent that is called NAME
-//   file://PATH, /PATH      the path itself
-//   any other               that path in the folder, then in each of its parents
-std::optional<std::filesystem::path> find_mesh(const std::string& name,
-                                               const std::filesystem::path& folder);
 
 // Returns whether this build can read mesh files (built with Assimp).
 bool can_read_meshes();

@@ -84,6 +84,10 @@ class ChainChooser {
     const UrdfChain chosen = choose_chain(links, joints, by_body, mjcf_.name);
     chain_.base = find_body(chosen.base);
     chain_.tip = find_body(chosen.tip);
+    chain_.reading.base = chosen.base;
+    chain_.reading.tip = chain_.site < 0 ? chosen.tip : options_.tip;
+    chain_.reading.ends = chosen.ends;
+    chain_.reading.is_tip_proposed = chosen.is_tip_proposed;
   }
 
   int find_body(const std::string& name) const {

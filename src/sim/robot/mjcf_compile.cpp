@@ -11,6 +11,7 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "sim/robot/mesh_file.hpp"
+#include "sim/robot/mesh_finder.hpp"
 #include "sim/robot/mjcf_parts.hpp"
 #include "sim/robot/urdf.hpp"
 
@@ -179,7 +180,7 @@ std::map<std::string, std::filesystem::path> load_mesh_masses(
     if (!needed.contains(mj_name2id(mjcf.model.get(), mjOBJ_MESH, mesh_name.c_str()))) {
       continue;
     }
-    const auto path = find_mesh(file, folder);
+    const auto path = MeshFinder(folder).find(file);
     if (!path) {
       missing += fmt::format("{}'{}'", missing.empty() ? "" : ", ", file);
       continue;

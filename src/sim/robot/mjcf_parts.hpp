@@ -54,6 +54,7 @@ struct MjcfChain {
   std::vector<int> joints;  // from the base to the tip
   // For each body: i if joint i - 1 of the chain moves it, 0 if it is part of the fixed base.
   std::vector<std::size_t> carriers;
+  RobotReading reading;
 };
 
 // Returns the chain that `options` selects. Throws as parse_urdf() does, and Error{bad_data} if a

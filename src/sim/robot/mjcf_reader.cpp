@@ -39,6 +39,7 @@ class MjcfBuilder {
   RobotModel build() {
     robot_.name = sanitize(m_.names);  // the model's name comes first
     robot_.base.name = mjcf_.body_name(0);
+    robot_.reading = chain_.reading;
     place_bodies();
     for (std::size_t i = 0; i < chain_.joints.size(); ++i) {
       add_joint(i);

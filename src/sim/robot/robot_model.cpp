@@ -130,8 +130,14 @@ RobotModel parse_urdf(std::string_view xml, const std::string& name, const Robot
                                        "0 for none",
                                        name, options.density_kg_per_m3));
   }
-  return is_mjcf(xml) ? parse_mjcf(xml, name, options)
-                      : build_model(check_urdf(xml, name, options), name, options);
+  if (is_mjcf(xml)) {
+    return parse_mjcf(xml, name, options);
+  }
+  UrdfFaults faults(name);
+  const CheckedUrdf checked = check_urdf(xml, name, options, faults);
+  RobotModel model = build_model(checked, name, options, faults);
+  faults.throw_if_any();
+  return model;
 }
 
 RobotModel add_load(RobotModel model, double mass_kg, const std::optional<LoadBody>& body) {

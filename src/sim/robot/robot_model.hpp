@@ -72,6 +72,33 @@ struct Joint {
   JointPlant plant;         // the ideal joint unless it is set
 };
 
+// A change of a URDF's text. Elements are numbered in the order of their opening tags; <robot> is 0.
+struct UrdfEdit {
+  enum class Kind { remove, replace, append };
+  std::size_t element = 0;
+  Kind kind = Kind::remove;
+  std::string xml = {};  // takes the element's place, or is added at the end of its content
+};
+
+// A blemish of a URDF with which the reader coped, as one line for the user, and the changes after
+// which the file needs no repair. Safe to print on a terminal.
+struct UrdfRepair {
+  std::string what;
+  std::vector<UrdfEdit> edits;
+};
+
+// How a robot's file was read.
+struct RobotReading {
+  std::string base, tip;          // the links at which the chain begins and ends
+  std::vector<std::string> ends;  // the links at the ends of the branches below the base
+  bool is_tip_proposed = false;   // the reader chose the tip among several ends
+  std::vector<UrdfRepair> repairs;
+  // The moving links whose masses are guesses, because the file states none (assumed_mass.hpp).
+  std::vector<std::string> assumed_links;
+  double density_kg_per_m3 = 0;  // that gave links their masses; 0: none did
+  std::map<std::string, std::filesystem::path> packages;  // as RobotOptions::packages
+};
+
 struct RobotModel {
   std::string name;
   Link base;                  // fixed to the world; its frame is the world's
@@ -91,20 +118,32 @@ struct RobotModel {
   // The mesh files from which masses were computed, and files that an MJCF file includes, by their
   // names as written in the robot's file.
   std::map<std::string, std::filesystem::path> mass_files;
+  RobotReading reading;
 
   std::size_t joint_count() const { return joints.size(); }
   // Returns whether a joint is not ideal.
   bool has_plant() const;
 };
 
+// The density of links without <inertial> if RobotOptions::repair asks for one: that of water, as
+// arms are castings with motors and air inside.
+inline constexpr double kRepairDensity_kg_per_m3 = 1000;
+
 // Options that select the simulated chain of a URDF and give links a mass.
 struct RobotOptions {
   std::string base = {};         // the chain's first link; empty: the root
-  std::string tip = {};          // the chain's last link; empty: the only leaf below the base
+  std::string tip = {};          // the chain's last link; empty: the leaf that is clearly the tool
   double density_kg_per_m3 = 0;  // density of moving links without <inertial>; 0: no mass
   // Whether the chain's joints have the viscous and Coulomb friction of their <dynamics>. If not,
   // they have none, as in version 1.0, and a note says so.
   bool dynamics = false;
+  // Whether the reader repairs what changes the arm's physics: it corrects inertias of moving links
+  // and assumes the masses of moving links that have none. If not, it refuses them, as version 1.0.
+  bool repair = false;
+  // With `repair` and without a density: whether kRepairDensity_kg_per_m3 gives links without mass
+  // that of their shapes, if all of these can be read. If not, it follows from the arm's lengths.
+  bool mass_from_shapes = true;
+  std::map<std::string, std::filesystem::path> packages = {};  // folders of packages by their names
 };
 
 // An Error{usage}: a member of RobotOptions does not fit the file. The message begins with the
@@ -128,7 +167,9 @@ class RobotOptionError final : public Error {
 // and uses `name` as the file's name in messages and to find meshes.
 //
 // The links of a URDF form a tree. The chain runs from the link `options.base` down to the link
-// `options.tip`; only the joints between them move. Every other joint is held at position 0, or at
+// `options.tip`; only the joints between them move. Without a tip it runs to the only leaf, or to
+// the leaf that is clearly the tool: the only one behind a moving joint that is no collision helper,
+// or the only one with a tool's name (tool0, tcp, ee, flange, ...). Every other joint is held at position 0, or at
 // the end of its range that is nearest to 0. Its links become part of the link that carries them.
 // Links beside the chain or beyond the tip become part of a moving link; links above or beside
 // `base` become part of the fixed base. The world's frame is the root link's frame. The tip's frame
@@ -145,19 +186,24 @@ class RobotOptionError final : public Error {
 // their reference position (ref). With `options.dynamics`, a joint has its armature, damping,
 // frictionloss and spring. Limits of effort are those of the actuators.
 //
+// What does not touch the arm's motion is repaired: a <visual> that cannot be shown is left out, and
+// so is a bad <inertial> of a link that does not move. `options.repair` also repairs moving links.
+// RobotReading::repairs has a line for each kind of repair.
+//
 // Throws RobotOptionError if
 // - the base or tip is not a link, or the base is not above the tip,
 // - no joint between them moves,
-// - there are several leaves and no tip is given,
+// - there are several leaves, no tip is given and none of them is clearly the tool,
 // - the density is not finite or is negative.
 //
-// Throws Error{bad_data} "FILE:LINE: what is wrong, what is allowed" for
+// Throws Error{bad_data} "FILE:LINE: what is wrong, what is allowed" for the faults below. If links
+// and joints have several, the message is "FILE: N things to mend" with a line for each.
 // - a file over 8 MiB, nesting deeper than 64, document types, a version other than 1.0, xacro,
 // - misspelt elements and attributes, and values that are not finite numbers,
 // - names used twice, and links that do not form a tree,
 // - a moving link without mass, or a mass <= 0 (mass 0 with an all-zero inertia means no mass),
-// - an inertia that is not symmetric positive definite or violates the triangle inequality of the
-//   principal moments,
+// - a moving link's inertia that is not symmetric positive definite or violates the triangle
+//   inequality of the principal moments,
 // - a mesh that is needed for a mass and cannot give one,
 // - a zero axis,
 // - on the chain: a revolute or prismatic joint without limits, lower > upper, speed or effort

@@ -50,26 +50,35 @@ Eigen::Vector3d get_corner(const TriangleMesh& mesh, std::size_t index) {
   return {at[0], at[1], at[2]};
 }
 
-Inertial calc_file_inertial(const VisualShape& shape, double density_kg_per_m3,
-                            const std::filesystem::path& folder,
-                            std::optional<std::filesystem::path>& file) {
+ShapeMass calc_file_mass(const VisualShape& shape, double density_kg_per_m3, MeshFinder& meshes) {
+  ShapeMass result;
   const std::string name = sanitize(shape.mesh_file);
-  file = find_mesh(shape.mesh_file, folder);
-  if (!file) {
+  result.file = meshes.find(shape.mesh_file);
+  if (!result.file) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("there is no mesh '{}' in the URDF's folder and the folders above it, "
-                            "but the link's mass comes from this mesh; put it there, or give the "
-                            "link an <inertial> element",
+                            "but the link's mass comes from this mesh; put it there, say where its "
+                            "package is (--package NAME=DIR, robot.packages), or give the link an "
+                            "<inertial> element",
                             name));
   }
-  const TriangleMesh mesh = read_mesh(*file);
-  const std::string where = sanitize(file->string());
-  if (const std::optional<std::string> gap = find_gap(mesh)) {
+  const TriangleMesh mesh = read_mesh(*result.file);
+  const std::string where = sanitize(result.file->string());
+  const MeshEdges edges = count_edges(mesh);
+  if (const std::optional<std::string> gap = find_gap(edges)) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("the mesh {} gives the link no mass: {}; {}", where, *gap, kRemedy));
   }
+  if (edges.open > 0) {
+    result.note = fmt::format(
+        "the mesh {} is not quite closed ({} of its {} edges have a triangle on one side only); "
+        "its "
+        "volume is that within its triangles",
+        name, edges.open, edges.count);
+  }
   try {
-    return calc_mesh_inertial(mesh, shape.size_m, density_kg_per_m3);
+    result.inertial = calc_mesh_inertial(mesh, shape.size_m, density_kg_per_m3);
+    return result;
   } catch (const Error& error) {
     throw Error(error.kind(), fmt::format("the mesh {} gives the link no mass: {}; {}", where,
                                           error.what(), kRemedy));
@@ -78,7 +87,7 @@ Inertial calc_file_inertial(const VisualShape& shape, double density_kg_per_m3,
 
 }  // namespace
 
-std::optional<std::string> find_gap(const TriangleMesh& mesh) {
+MeshEdges count_edges(const TriangleMesh& mesh) {
   using Point = std::array<float, 3>;
   std::map<Point, std::uint32_t> points;
   std::vector<std::uint32_t> merged;
@@ -105,18 +114,24 @@ std::optional<std::string> find_gap(const TriangleMesh& mesh) {
       edge.direction += from < to ? 1 : -1;
     }
   }
-  std::size_t open = 0, turned = 0;
+  MeshEdges counts;
+  counts.count = edges.size();
   for (const auto& [ends, edge] : edges) {
-    open += edge.triangles % 2 != 0;
-    turned += edge.triangles % 2 == 0 && edge.direction != 0;
+    counts.open += edge.triangles % 2 != 0;
+    counts.turned += edge.triangles % 2 == 0 && edge.direction != 0;
   }
-  if (open > 0) {
+  return counts;
+}
+
+std::optional<std::string> find_gap(const MeshEdges& edges) {
+  if (edges.open > 0 &&
+      static_cast<double>(edges.open) >= kMostOpenEdges * static_cast<double>(edges.count)) {
     return fmt::format("it is not closed ({} of its {} edges have a triangle on one side only)",
-                       open, edges.size());
+                       edges.open, edges.count);
   }
-  if (turned > 0) {
+  if (edges.turned > 0) {
     return fmt::format("its triangles are not all oriented alike (those at {} of {} edges are not)",
-                       turned, edges.size());
+                       edges.turned, edges.count);
   }
   return std::nullopt;
 }
@@ -164,10 +179,9 @@ Inertial calc_mesh_inertial(const TriangleMesh& mesh, const Eigen::Vector3d& sca
   return body;
 }
 
-Inertial calc_shape_inertial(const VisualShape& shape, double density_kg_per_m3,
-                             const std::filesystem::path& folder,
-                             std::optional<std::filesystem::path>& file) {
-  Inertial body;
+ShapeMass calc_shape_mass(const VisualShape& shape, double density_kg_per_m3, MeshFinder& meshes) {
+  ShapeMass result;
+  Inertial& body = result.inertial;
   switch (shape.kind) {
     case ShapeKind::box:
       body = make_box(shape.size_m, density_kg_per_m3);
@@ -179,7 +193,7 @@ Inertial calc_shape_inertial(const VisualShape& shape, double density_kg_per_m3,
       body = make_sphere(shape.size_m.x(), density_kg_per_m3);
       break;
     case ShapeKind::mesh:
-      body = calc_file_inertial(shape, density_kg_per_m3, folder, file);
+      result = calc_file_mass(shape, density_kg_per_m3, meshes);
       break;
   }
   if (!(body.mass_kg > 0) || !(body.inertia_kg_m2.diagonal().minCoeff() > 0) ||
@@ -189,7 +203,8 @@ Inertial calc_shape_inertial(const VisualShape& shape, double density_kg_per_m3,
                             "simulation can use; give the link an <inertial> element",
                             body.mass_kg));
   }
-  return transform(body, shape.pose);
+  body = transform(body, shape.pose);
+  return result;
 }
 
 }  // namespace armwright

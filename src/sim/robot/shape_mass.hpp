@@ -14,27 +14,42 @@
 #include <string>
 
 #include "sim/robot/mesh_file.hpp"
+#include "sim/robot/mesh_finder.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace armwright {
 
-// Returns nothing if the mesh is closed; otherwise the reason why it encloses no solid: an edge
-// lacks a triangle, or two triangles at an edge have opposite orientations. Corners with equal
-// coordinates count as the same corner.
-std::optional<std::string> find_gap(const TriangleMesh& mesh);
+// The edges of a mesh. Corners with equal coordinates count as the same corner.
+struct MeshEdges {
+  std::size_t count = 0;
+  std::size_t open = 0;    // with a triangle on one side only
+  std::size_t turned = 0;  // between triangles of opposite orientations
+};
+MeshEdges count_edges(const TriangleMesh& mesh);
 
-// Returns the mass properties of a mesh without gaps, after `scale` has multiplied its coordinates.
+// A mesh with fewer open edges than this share of all counts as closed. Its volume has an error of
+// the same order.
+inline constexpr double kMostOpenEdges = 0.01;
+
+// Returns nothing if the mesh encloses a solid; otherwise the reason why it does not: too many open
+// edges, or turned ones.
+std::optional<std::string> find_gap(const MeshEdges& edges);
+
+// Returns the mass properties of a mesh, after `scale` has multiplied its coordinates.
 // A scale that mirrors the mesh also reverses the triangles' orientation. Throws Error{bad_data} if
 // the volume is not positive: the triangles face inwards, or the mesh is a sheet without thickness.
 Inertial calc_mesh_inertial(const TriangleMesh& mesh, const Eigen::Vector3d& scale,
                             double density_kg_per_m3);
 
-// Returns the mass properties of any shape, in the link's frame. Searches meshes from `folder`
-// (find_mesh()) and writes the path of the mesh that it read into `file`. Throws Error{bad_data}
-// "what is wrong, what to do" for a mesh that does not exist, cannot be read or is not a solid, and
-// for a shape that is too small to have an inertia.
-Inertial calc_shape_inertial(const VisualShape& shape, double density_kg_per_m3,
-                             const std::filesystem::path& folder,
-                             std::optional<std::filesystem::path>& file);
+struct ShapeMass {
+  Inertial inertial;                          // in the link's frame
+  std::optional<std::filesystem::path> file;  // the mesh that was read
+  std::string note;                           // about the mesh; may be empty
+};
+
+// Returns the mass properties of any shape. Throws Error{bad_data} "what is wrong, what to do" for a
+// mesh that does not exist, cannot be read or is not a solid, and for a shape that is too small to
+// have an inertia.
+ShapeMass calc_shape_mass(const VisualShape& shape, double density_kg_per_m3, MeshFinder& meshes);
 
 }  // namespace armwright

@@ -4,12 +4,15 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/error.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace armwright {
@@ -22,22 +25,78 @@ inline constexpr std::size_t kUrdfTextLimit_bytes = 4096;  // of a name or a mes
 inline constexpr std::size_t kUrdfLinkLimit =
     1'000;  // build_model() recurses once per link of a branch
 
+// The largest accepted number. Larger ones are mistakes, and squares and products must not overflow.
+inline constexpr double kUrdfLargest = 1e18;
+
 // The advice in messages about a file that still contains xacro.
 inline constexpr std::string_view kXacroAdvice =
-    "xacro is not read: run xacro my.urdf.xacro > my.urdf (ROS), or python3 -m xacro my.urdf.xacro "
-    "> my.urdf, and give armwright the result";
+    "xacro is not read: expand the file and give armwright the result. ROS 2: ros2 run xacro xacro "
+    "my.urdf.xacro > my.urdf. ROS 1: rosrun xacro xacro my.urdf.xacro > my.urdf. Without ROS: pip "
+    "install xacrodoc; xacrodoc my.urdf.xacro -o my.urdf. Arguments of the file follow as "
+    "name:=value";
 
-// Throws Error{bad_data} "NAME:LINE: WHAT".
+// An Error{bad_data} about one place of a URDF.
+class UrdfFault final : public Error {
+ public:
+  UrdfFault(int line, const std::string& message, std::string detail)
+      : Error(ErrorKind::bad_data, message), line_(line), detail_(std::move(detail)) {}
+  int line() const { return line_; }
+  // Returns what is wrong, without the file, the line and the link or joint.
+  const std::string& detail() const { return detail_; }
+
+ private:
+  int line_;
+  std::string detail_;
+};
+
+// Collects the faults of a URDF, so that the user sees all of them at once.
+class UrdfFaults {
+ public:
+  // `name` is the file's name in messages. It must outlive the object.
+  explicit UrdfFaults(const std::string& name) : name_(name) {}
+  // Calls `check` and keeps its UrdfFault. Returns whether it had none.
+  bool attempt(const std::function<void()>& check);
+  // Returns the fault that was found first, or null.
+  const UrdfFault* first() const { return faults_.empty() ? nullptr : &faults_.front(); }
+  std::size_t count() const { return faults_.size(); }
+  // Throws the only fault, or an Error{bad_data} that lists all in the order of their lines.
+  void throw_if_any() const;
+
+ private:
+  const std::string& name_;
+  std::vector<UrdfFault> faults_;
+};
+
+// Collects repairs. Repairs of the same kind become one line that names all their places.
+class UrdfRepairs {
+ public:
+  // `kind` is what was done, `place` is where: "'link_1' (line 12)".
+  void add(const std::string& kind, const std::string& place, std::vector<UrdfEdit> edits);
+  // Returns the lines in the order in which their kinds were added first.
+  std::vector<UrdfRepair> list() const;
+
+ private:
+  struct Kind {
+    std::string what;
+    std::vector<std::string> places;
+    std::vector<UrdfEdit> edits;
+  };
+  std::vector<Kind> kinds_;
+};
+
+// Throws UrdfFault "NAME:LINE: WHAT".
 [[noreturn]] void fail_urdf(const std::string& name, int line, const std::string& what);
 
 // Checks the text before the XML parser reads it: sizes, nesting, NUL bytes, document types,
 // entities, truncation.
 void scan_urdf(std::string_view xml, const std::string& name);
 
-// The name of a link and its line in the file.
+// The name of a link, its line in the file and its number among the elements (UrdfEdit).
 struct UrdfLink {
   std::string name;
   int line = 0;
+  std::size_t element = 0;
+  bool has_visual = false;
 };
 // A joint's name, parent link, child link and type, and its line in the file.
 struct UrdfJoint {
@@ -47,8 +106,12 @@ struct UrdfJoint {
 
 // The part of the tree of links that is simulated as the chain.
 struct UrdfChain {
-  std::string base, tip;              // names of links
-  std::map<std::string, int> joints;  // lines of the chain's moving joints, by name
+  std::string base, tip;                // names of links
+  std::map<std::string, int> joints;    // lines of the chain's moving joints, by name
+  std::vector<std::string> ends;        // the leaves below the base, in the file's order
+  bool is_tip_proposed = false;         // chosen among several ends
+  std::set<std::string> moving_links;   // the links that the chain's joints move
+  std::set<std::string> carried_links;  // those of them that another link carries
 };
 // Returns the chain that `options` selects. Checks that the links form a tree with one root. Throws
 // RobotOptionError as load_urdf() does, also if no joint between base and tip can move.
@@ -59,6 +122,9 @@ UrdfChain choose_chain(const std::vector<UrdfLink>& links, const std::vector<Urd
 struct UrdfBody {
   std::optional<Inertial> inertial;  // in the link's frame
   std::vector<VisualShape> shapes;   // poses in the link's frame
+  std::string unshown;               // why a shape is left out that may have a volume
+  bool has_faults = false;           // the inertial could not be read
+  std::size_t zero_inertial = 0;     // the number of an <inertial> of zeros; 0: there is none
 };
 
 // A joint's origin, and its motion if it is part of the chain.
@@ -82,15 +148,23 @@ struct CheckedUrdf {
   std::vector<UrdfJoint> joints;
   std::vector<UrdfPlacement> placements;  // one per joint
   std::vector<std::string> notes;
+  UrdfRepairs repairs;
 };
 
-// Calls scan_urdf(), then reads and validates every part of the file that armwright uses.
-CheckedUrdf check_urdf(std::string_view xml, const std::string& name, const RobotOptions& options);
+// Calls scan_urdf(), then reads and validates every part of the file that armwright uses. Throws
+// for text that is not XML and for links and joints that are no tree. Other faults go to `faults`;
+// then the result is not a robot.
+CheckedUrdf check_urdf(std::string_view xml, const std::string& name, const RobotOptions& options,
+                       UrdfFaults& faults);
 
 // Builds the model: joins links that do not move relative to each other, and computes missing
-// masses from the density. Throws for a moving link without mass. Searches meshes from the folder
-// of the file `name`.
+// masses from the density, or assumes them with `options.repair`. Moving links without mass go to
+// `faults`. Searches meshes from the folder of the file `name`.
 RobotModel build_model(const CheckedUrdf& checked, const std::string& name,
-                       const RobotOptions& options);
+                       const RobotOptions& options, UrdfFaults& faults);
+
+// Returns the <inertia> and the <inertial> of a body, with all digits of its numbers.
+std::string write_inertia(const Eigen::Matrix3d& tensor);
+std::string write_inertial(const Inertial& body);
 
 }  // namespace armwright

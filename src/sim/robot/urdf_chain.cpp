@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <set>
 
@@ -11,6 +12,8 @@
 
 namespace armwright {
 namespace {
+
+constexpr std::string_view kToolNames[] = {"tool", "tool0", "tcp", "tcp0", "ee", "eef", "flange"};
 
 // Returns the first twelve names as text, and the number of the others.
 std::string list_names(const std::vector<std::string>& names, std::string_view separator) {
@@ -21,6 +24,26 @@ std::string list_names(const std::vector<std::string>& names, std::string_view s
   }
   return join(shown, separator) +
          (names.size() > kShown ? fmt::format(" and {} more", names.size() - kShown) : "");
+}
+
+// Returns whether the name ends as those of frames at tools do: "tool0", "left_tcp", "ee_link".
+bool is_tool_name(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char letter) {
+    return static_cast<char>(std::tolower(letter));
+  });
+  for (const std::string_view ending : {"_link", "_frame"}) {
+    if (name.ends_with(ending)) {
+      name.resize(name.size() - ending.size());
+    }
+  }
+  const std::string last = name.substr(name.find_last_of("_-/.") + 1);
+  return name.ends_with("end_effector") ||
+         std::ranges::find(kToolNames, last) != std::end(kToolNames);
+}
+
+// Returns whether the link exists only to be touched: it has no looks, and its name says so.
+bool is_collision_helper(const UrdfLink& link) {
+  return !link.has_visual && (link.name.ends_with("_sc") || link.name.ends_with("_collision"));
 }
 
 // The links and joints as a tree.
@@ -157,23 +180,29 @@ class Chooser {
   UrdfChain choose() const {
     UrdfChain chain;
     chain.base = options_.base.empty() ? tree_.root().name : find_link("base", options_.base);
-    chain.tip = options_.tip.empty() ? find_only_leaf(chain.base) : find_link("tip", options_.tip);
+    chain.ends = tree_.find_leaves(chain.base);
+    chain.is_tip_proposed = options_.tip.empty() && chain.ends.size() > 1;
+    chain.tip = options_.tip.empty() ? propose_tip(chain) : find_link("tip", options_.tip);
     const std::vector<const UrdfJoint*> way = tree_.find_way(chain.tip);
     auto first = way.begin();
     if (chain.base != tree_.root().name) {
       first = std::find_if(way.begin(), way.end(),
                            [&](const UrdfJoint* joint) { return joint->child == chain.base; });
       if (first == way.end()) {
-        fail("base", fmt::format("the base '{}' is not above the tip '{}', and the path from "
-                                 "the root to the tip is {}; name one of these",
-                                 chain.base, chain.tip, describe_way(way)));
+        refuse_base(chain, way);
       }
       ++first;
     }
     for (; first != way.end(); ++first) {
-      if ((*first)->type != "fixed") {
-        chain.joints.emplace((*first)->name, (*first)->line);
+      if ((*first)->type == "fixed") {
+        continue;
       }
+      if (chain.joints.empty()) {
+        chain.moving_links = tree_.find_all_below((*first)->child);
+        chain.carried_links = chain.moving_links;
+      }
+      chain.joints.emplace((*first)->name, (*first)->line);
+      chain.carried_links.erase((*first)->child);
     }
     if (chain.joints.empty()) {
       fail_without_joint(chain);
@@ -198,16 +227,59 @@ class Chooser {
     return link;
   }
 
-  std::string find_only_leaf(const std::string& base) const {
-    const std::vector<std::string> leaves = tree_.find_leaves(base);
-    if (leaves.size() > 1) {
+  // Returns the only leaf below the base, or the one that is clearly the tool.
+  std::string propose_tip(const UrdfChain& chain) const {
+    std::vector<std::string> left = chain.ends;
+    const auto keep = [&left](const auto& is_kept) {
+      if (left.size() > 1) {
+        std::erase_if(left, [&](const std::string& leaf) { return !is_kept(leaf); });
+      }
+    };
+    keep([&](const std::string& leaf) { return moves(chain.base, leaf); });
+    keep([&](const std::string& leaf) {
+      return std::ranges::none_of(links_, [&](const UrdfLink& link) {
+        return link.name == leaf && is_collision_helper(link);
+      });
+    });
+    keep(is_tool_name);
+    if (left.size() != 1) {
       fail("tip",
            fmt::format("the links branch and end in {}; name the one whose frame is the tool "
                        "centre point (or any other link) with robot.tip or --tip",
-                       list_names(leaves, ", ")),
-           leaves);
+                       list_names(chain.ends, ", ")),
+           chain.ends);
     }
-    return leaves.front();
+    return left.front();
+  }
+
+  // Returns whether a joint between the base and the link can move.
+  bool moves(const std::string& base, const std::string& link) const {
+    const std::vector<const UrdfJoint*> way = tree_.find_way(link);
+    return std::any_of(way.rbegin(),
+                       std::find_if(way.rbegin(), way.rend(),
+                                    [&](const auto* joint) { return joint->child == base; }),
+                       [](const UrdfJoint* joint) { return joint->type != "fixed"; });
+  }
+
+  [[noreturn]] void refuse_base(const UrdfChain& chain,
+                                const std::vector<const UrdfJoint*>& way) const {
+    const std::vector<const UrdfJoint*> above_base = tree_.find_way(chain.base);
+    const bool is_tip_above =
+        chain.tip == tree_.root().name || std::ranges::any_of(above_base, [&](const auto* joint) {
+          return joint->child == chain.tip;
+        });
+    if (is_tip_above) {
+      fail("tip",
+           fmt::format(
+               "the tip '{0}' is above the base '{1}' in the tree of links, and a chain runs "
+               "down from its base to its tip; exchange them (--base {0} --tip {1}), or name "
+               "a tip below the base",
+               chain.tip, chain.base));
+    }
+    fail("base",
+         fmt::format("the base '{}' is not above the tip '{}', and the path from the root to "
+                     "the tip is {}; name one of these",
+                     chain.base, chain.tip, describe_way(way)));
   }
 
   std::string describe_way(const std::vector<const UrdfJoint*>& way) const {

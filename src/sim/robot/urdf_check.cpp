@@ -90,18 +90,24 @@ const XMLElement& find_robot(const tinyxml2::XMLDocument& document, const UrdfXm
 // anything else of links and joints.
 class Index {
  public:
-  Index(const XMLElement& robot, UrdfXml& xml) : xml_(xml) {
+  // Throws all faults of the links, or if there are none, those of the joints.
+  Index(const XMLElement& robot, UrdfXml& xml, const std::string& name, const UrdfNumbers& numbers)
+      : xml_(xml), numbers_(numbers) {
+    UrdfFaults faults(name);
     for (const XMLElement* e = robot.FirstChildElement("link"); e != nullptr;
          e = e->NextSiblingElement("link")) {
-      add_link(*e);
+      faults.attempt([&] { add_link(*e); });
     }
+    faults.throw_if_any();
+    xml_.set_context("the file");
     if (links.empty()) {
       xml_.fail(robot, "<robot> has no <link>; it needs a chain of links and joints");
     }
     for (const XMLElement* e = robot.FirstChildElement("joint"); e != nullptr;
          e = e->NextSiblingElement("joint")) {
-      add_joint(*e);
+      faults.attempt([&] { add_joint(*e); });
     }
+    faults.throw_if_any();
   }
 
   std::vector<UrdfLink> links;
@@ -115,12 +121,12 @@ class Index {
     if (!link_names_.insert(name).second) {
       xml_.fail(element, "the name is used by an earlier link; names must be unique");
     }
-    links.push_back({name, element.GetLineNum()});
-    if (links.size() > kUrdfLinkLimit) {
+    if (links.size() == kUrdfLinkLimit) {
       xml_.fail(element,
                 fmt::format("is one too many; at most {} links are allowed", kUrdfLinkLimit));
     }
-    xml_.set_context("the file");
+    links.push_back({name, element.GetLineNum(), numbers_.at(&element),
+                     element.FirstChildElement("visual") != nullptr});
   }
 
   void add_joint(const XMLElement& element) {
@@ -161,8 +167,18 @@ class Index {
   }
 
   UrdfXml& xml_;
+  const UrdfNumbers& numbers_;
   std::set<std::string> link_names_, joint_names_;
 };
+
+// Numbers an element and those inside it in the file's order.
+void add_numbers(const XMLElement& element, UrdfNumbers& numbers) {
+  numbers.emplace(&element, numbers.size());
+  for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    add_numbers(*child, numbers);  // at most kUrdfDepthLimit deep
+  }
+}
 
 // Throws unless the version is 1.0, the only version of URDF.
 void check_version(const XMLElement& robot, const UrdfXml& xml) {
@@ -176,7 +192,7 @@ void check_version(const XMLElement& robot, const UrdfXml& xml) {
 }  // namespace
 
 CheckedUrdf check_urdf(std::string_view xml_text, const std::string& name,
-                       const RobotOptions& options) {
+                       const RobotOptions& options, UrdfFaults& faults) {
   scan_urdf(xml_text, name);
   tinyxml2::XMLDocument document;
   if (document.Parse(xml_text.data(), xml_text.size()) != tinyxml2::XML_SUCCESS) {
@@ -193,21 +209,33 @@ CheckedUrdf check_urdf(std::string_view xml_text, const std::string& name,
   if (robot.Attribute("version") != nullptr) {
     check_version(robot, xml);
   }
-  LinkChecker links(robot, xml);
-  Index index(robot, xml);
+  UrdfNumbers numbers;
+  add_numbers(robot, numbers);
+  VisualChecker visuals(robot, xml, numbers, checked.repairs);
+  Index index(robot, xml, name, numbers);
   checked.chain = choose_chain(index.links, index.joints, options, name);
   checked.links = std::move(index.links);
   checked.joints = std::move(index.joints);
+  InertialChecker inertials(checked.chain, options.repair, xml, numbers, checked.repairs);
   for (const XMLElement* e = robot.FirstChildElement("link"); e != nullptr;
        e = e->NextSiblingElement("link")) {
-    checked.bodies.push_back(links.read(*e, checked.links[checked.bodies.size()].name));
+    const std::string& link = checked.links[checked.bodies.size()].name;
+    UrdfBody& body = checked.bodies.emplace_back();
+    xml.set_context(fmt::format("link '{}'", link));
+    const std::size_t before = faults.count();
+    faults.attempt([&] {
+      xml.check_names(*e, {"inertial", "visual", "collision", "sensor"}, {"name", "type"});
+      inertials.read(*e, link, body, faults);
+    });
+    body.has_faults = faults.count() > before;
+    visuals.read(*e, link, body);
   }
-  JointChecker joints(checked.chain, options.dynamics, xml);
+  JointChecker joints(checked.chain, options.dynamics, xml, faults);
   for (const XMLElement* e = robot.FirstChildElement("joint"); e != nullptr;
        e = e->NextSiblingElement("joint")) {
     checked.placements.push_back(joints.read(*e, checked.joints[checked.placements.size()]));
   }
-  checked.notes = links.make_notes();
+  checked.notes = inertials.make_notes();
   for (std::string& note : joints.make_notes()) {
     checked.notes.push_back(std::move(note));
   }

@@ -39,21 +39,28 @@ Range read_range(const XMLElement& limit, bool prismatic, const UrdfXml& xml) {
 
 UrdfPlacement JointChecker::read(const XMLElement& element, const UrdfJoint& joint) {
   xml_.set_context(fmt::format("joint '{}'", joint.name));
-  xml_.check_names(element,
-                   {"parent", "child", "origin", "axis", "limit", "dynamics", "mimic",
-                    "calibration", "safety_controller"},
-                   {"name", "type"});
   UrdfPlacement placement;
-  placement.origin = read_origin(element, xml_);
+  placement.motion.name = joint.name;  // also if the rest cannot be read
+  const bool has_known_parts = faults_.attempt([&] {
+    xml_.check_names(element,
+                     {"parent", "child", "origin", "axis", "limit", "dynamics", "mimic",
+                      "calibration", "safety_controller"},
+                     {"name", "type"});
+  });
+  if (!has_known_parts) {
+    return placement;  // a misspelt part would be missed, too
+  }
+  faults_.attempt([&] { placement.origin = read_origin(element, xml_); });
   if (chain_.joints.contains(joint.name)) {
     placement.motion = read_motion(element, joint);
   } else if (joint.type != "fixed") {
-    hold(element, joint, placement);
+    faults_.attempt([&] { hold(element, joint, placement); });
   }
   return placement;
 }
 
-Joint JointChecker::read_motion(const XMLElement& element, const UrdfJoint& joint) {
+// Refuses what no joint of the chain can be.
+void JointChecker::refuse_kind(const XMLElement& element, const UrdfJoint& joint) const {
   if (joint.type == "floating" || joint.type == "planar") {
     xml_.fail(element,
               fmt::format("the type is '{}'; between base '{}' and tip '{}' only revolute, "
@@ -67,15 +74,23 @@ Joint JointChecker::read_motion(const XMLElement& element, const UrdfJoint& join
                                   "--tip), remove the element, or make the joint fixed",
                                   chain_.base, chain_.tip));
   }
+}
+
+Joint JointChecker::read_motion(const XMLElement& element, const UrdfJoint& joint) {
   Joint motion;
   motion.name = joint.name;
   motion.kind = joint.type == "prismatic" ? JointKind::prismatic : JointKind::revolute;
-  motion.axis = read_axis(element).normalized();
-  read_limit(element, joint, motion);
-  read_dynamics(element, joint, motion);
-  if (xml_.find_only(element, "safety_controller") != nullptr) {
-    softly_limited_.push_back(fmt::format("'{}'", joint.name));
+  if (!faults_.attempt([&] { refuse_kind(element, joint); })) {
+    return motion;
   }
+  faults_.attempt([&] { motion.axis = read_axis(element).normalized(); });
+  faults_.attempt([&] { read_limit(element, joint, motion); });
+  faults_.attempt([&] { read_dynamics(element, joint, motion); });
+  faults_.attempt([&] {
+    if (xml_.find_only(element, "safety_controller") != nullptr) {
+      softly_limited_.push_back(fmt::format("'{}'", joint.name));
+    }
+  });
   return motion;
 }
 
@@ -141,21 +156,25 @@ void JointChecker::read_limit(const XMLElement& element, const UrdfJoint& joint,
   }
   xml_.check_names(*limit, {}, {"lower", "upper", "velocity", "effort"});
   if (bounded) {
-    const Range range = read_range(*limit, prismatic, xml_);
-    motion.lower = range.lower;
-    motion.upper = range.upper;
+    faults_.attempt([&] {
+      const Range range = read_range(*limit, prismatic, xml_);
+      motion.lower = range.lower;
+      motion.upper = range.upper;
+    });
   }
   for (const char* attribute : {"velocity", "effort"}) {
-    const double value = xml_.read_number(*limit, attribute);
-    if (value < 0) {
-      xml_.fail(*limit, fmt::format("<limit>: {} is {}; it must be >= 0", attribute, value));
-    }
-    if (value == 0) {  // a placeholder for no limit
-      without_limit_[attribute].push_back(fmt::format("'{}'", joint.name));
-    } else {
-      (std::string_view(attribute) == "velocity" ? motion.speed_limit : motion.effort_limit) =
-          value;
-    }
+    faults_.attempt([&] {
+      const double value = xml_.read_number(*limit, attribute);
+      if (value < 0) {
+        xml_.fail(*limit, fmt::format("<limit>: {} is {}; it must be >= 0", attribute, value));
+      }
+      if (value == 0) {  // a placeholder for no limit
+        without_limit_[attribute].push_back(fmt::format("'{}'", joint.name));
+      } else {
+        (std::string_view(attribute) == "velocity" ? motion.speed_limit : motion.effort_limit) =
+            value;
+      }
+    });
   }
 }
 

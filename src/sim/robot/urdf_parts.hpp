@@ -1,5 +1,5 @@
 // Strict reading of XML elements, links and joints. Only urdf_xml.cpp and urdf_check*.cpp include
-// this header. Every error is Error{bad_data} and names the file, the line, the link or joint, the
+// this header. Every error is a UrdfFault and names the file, the line, the link or joint, the
 // element and the attribute.
 #pragma once
 
@@ -25,8 +25,12 @@ class UrdfXml {
 
   // Sets how messages name the current link or joint, for example "link 'link_1'".
   void set_context(std::string where) { where_ = std::move(where); }
-  // Throws Error{bad_data} with the file's name, the element's line and the context.
+  // Throws UrdfFault with the file's name, the element's line and the context.
   [[noreturn]] void fail(const tinyxml2::XMLElement& element, const std::string& what) const;
+  // Throws Error{bad_data} about text that xacro must expand first. It is no UrdfFault, because all
+  // other faults are of no use then.
+  [[noreturn]] void fail_as_xacro(const tinyxml2::XMLElement& element,
+                                  const std::string& what) const;
 
   // Throws for a child or attribute whose name looks misspelt, and for elements of xacro. Ignores
   // other extensions of URDF.
@@ -51,7 +55,7 @@ class UrdfXml {
   double read_number(const tinyxml2::XMLElement& element, const char* attribute) const;
   double read_number(const tinyxml2::XMLElement& element, const char* attribute,
                      double fallback) const;
-  double read_positive(const tinyxml2::XMLElement& element, const char* attribute) const;
+  double read_not_negative(const tinyxml2::XMLElement& element, const char* attribute) const;
 
  private:
   void check_spelling(const tinyxml2::XMLElement& at, const std::string& what,
@@ -66,27 +70,60 @@ class UrdfXml {
 // Returns the pose of an element's <origin>, or the identity if it has none.
 Eigen::Isometry3d read_origin(const tinyxml2::XMLElement& parent, const UrdfXml& xml);
 
-// A reader of <link> elements: their mass and visual shapes.
-class LinkChecker {
- public:
-  // Reads the robot's materials, which links refer to by name.
-  LinkChecker(const tinyxml2::XMLElement& robot, UrdfXml& xml);
+// The numbers of the elements of a file (UrdfEdit).
+using UrdfNumbers = std::map<const tinyxml2::XMLElement*, std::size_t>;
 
-  UrdfBody read(const tinyxml2::XMLElement& link, const std::string& link_name);
-  std::vector<std::string> make_notes() const;
+// A reader of the <visual> elements of links. It leaves out what cannot be shown.
+class VisualChecker {
+ public:
+  // Reads the robot's materials, which visuals refer to by name.
+  VisualChecker(const tinyxml2::XMLElement& robot, UrdfXml& xml, const UrdfNumbers& numbers,
+                UrdfRepairs& repairs);
+
+  // Adds the shapes of a link to `body`.
+  void read(const tinyxml2::XMLElement& link, const std::string& link_name, UrdfBody& body);
 
  private:
   void collect_colors(const tinyxml2::XMLElement& holder);
-  std::optional<Inertial> read_inertial(const tinyxml2::XMLElement& element,
-                                        const std::string& link_name);
-  VisualShape read_visual(const tinyxml2::XMLElement& element);
-  void read_shape(const tinyxml2::XMLElement& element, const std::vector<std::string>& kinds,
+  std::vector<double> read_rgba(const tinyxml2::XMLElement& material) const;
+  VisualShape read_visual(const tinyxml2::XMLElement& element) const;
+  void read_shape(const tinyxml2::XMLElement& element, VisualShape& shape) const;
+  void read_color(const tinyxml2::XMLElement& visual, const std::string& link_name,
                   VisualShape& shape);
-  void read_color(const tinyxml2::XMLElement& material, VisualShape& shape);
+  bool is_usable(const tinyxml2::XMLElement& material) const;
 
   UrdfXml& xml_;
+  const UrdfNumbers& numbers_;
+  UrdfRepairs& repairs_;
   std::map<std::string, std::vector<double>> colors_;  // by material; empty: only a texture
   std::map<const tinyxml2::XMLElement*, std::vector<double>> own_colors_;  // by <material>
+};
+
+// A reader of the <inertial> elements of links.
+class InertialChecker {
+ public:
+  // `repair`: as RobotOptions::repair.
+  InertialChecker(const UrdfChain& chain, bool repair, UrdfXml& xml, const UrdfNumbers& numbers,
+                  UrdfRepairs& repairs)
+      : chain_(chain), repair_(repair), xml_(xml), numbers_(numbers), repairs_(repairs) {}
+
+  // Sets the mass properties of a link, if it has some. Adds what is wrong with them to the faults
+  // if the link moves.
+  void read(const tinyxml2::XMLElement& link, const std::string& link_name, UrdfBody& body,
+            UrdfFaults& faults);
+  std::vector<std::string> make_notes() const;
+
+ private:
+  void read_inertial(const tinyxml2::XMLElement& element, const std::string& link_name,
+                     UrdfBody& body, UrdfFaults& faults);
+  Eigen::Matrix3d check_tensor(const tinyxml2::XMLElement& inertia, const Eigen::Matrix3d& tensor,
+                               double mass_kg, const std::string& link_name);
+
+  const UrdfChain& chain_;
+  bool repair_;
+  UrdfXml& xml_;
+  const UrdfNumbers& numbers_;
+  UrdfRepairs& repairs_;
   std::vector<std::string> massless_;
 };
 
@@ -94,14 +131,16 @@ class LinkChecker {
 class JointChecker {
  public:
   // `dynamics`: as RobotOptions::dynamics.
-  JointChecker(const UrdfChain& chain, bool dynamics, UrdfXml& xml)
-      : chain_(chain), dynamics_(dynamics), xml_(xml) {}
+  JointChecker(const UrdfChain& chain, bool dynamics, UrdfXml& xml, UrdfFaults& faults)
+      : chain_(chain), dynamics_(dynamics), xml_(xml), faults_(faults) {}
 
+  // Adds what is wrong with the joint to the faults.
   UrdfPlacement read(const tinyxml2::XMLElement& element, const UrdfJoint& joint);
   std::vector<std::string> make_notes() const;
 
  private:
   Joint read_motion(const tinyxml2::XMLElement& element, const UrdfJoint& joint);
+  void refuse_kind(const tinyxml2::XMLElement& element, const UrdfJoint& joint) const;
   void hold(const tinyxml2::XMLElement& element, const UrdfJoint& joint,
             UrdfPlacement& placement) const;
   Eigen::Vector3d read_axis(const tinyxml2::XMLElement& element) const;
@@ -111,6 +150,7 @@ class JointChecker {
   const UrdfChain& chain_;
   bool dynamics_;
   UrdfXml& xml_;
+  UrdfFaults& faults_;
   std::vector<std::string> rubbing_, softly_limited_;              // joints, in the file's order
   std::map<std::string, std::vector<std::string>> without_limit_;  // by attribute of <limit>
 };

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "sim/robot/assumed_mass.hpp"
 #include "sim/robot/shape_mass.hpp"
 #include "sim/robot/urdf.hpp"
 
@@ -20,11 +21,16 @@ namespace {
 // chain becomes part of it.
 class Builder {
  public:
-  Builder(const CheckedUrdf& checked, const std::string& name, const RobotOptions& options)
+  Builder(const CheckedUrdf& checked, const std::string& name, const RobotOptions& options,
+          UrdfFaults& faults)
       : checked_(checked),
         name_(name),
         density_kg_per_m3_(options.density_kg_per_m3),
-        folder_(std::filesystem::path(name).parent_path()) {}
+        repair_(options.repair),
+        meshes_(std::filesystem::path(name).parent_path(), options.packages),
+        faults_(faults) {
+    model_.reading.packages = options.packages;
+  }
 
   RobotModel build() {
     std::set<std::string> children;
@@ -40,16 +46,19 @@ class Builder {
     model_.name = checked_.name;
     model_.base.name = root->name;
     add(root->name, Eigen::Isometry3d::Identity(), 0, nullptr);
-    check_masses();
     model_.notes = checked_.notes;
+    add_reading();
+    if (repair_) {
+      assume_missing_masses();
+    }
+    check_masses();
     std::ranges::sort(held_, {}, &Held::joint);  // in the order of the file
     for (const Held& held : held_) {
       model_.held_joints.push_back(checked_.joints[held.joint].name);
       model_.notes.push_back(describe(held));
     }
-    for (std::string& note : mass_notes_) {
-      model_.notes.push_back(std::move(note));
-    }
+    std::ranges::move(mass_notes_, std::back_inserter(model_.notes));
+    std::ranges::move(mass_repairs_.list(), std::back_inserter(model_.reading.repairs));
     return std::move(model_);
   }
 
@@ -95,6 +104,53 @@ class Builder {
     }
   }
 
+  void add_reading() {
+    const UrdfChain& chain = checked_.chain;
+    RobotReading& reading = model_.reading;
+    reading.base = chain.base;
+    reading.tip = chain.tip;
+    reading.ends = chain.ends;
+    reading.is_tip_proposed = chain.is_tip_proposed;
+    reading.repairs = checked_.repairs.list();
+    if (chain.is_tip_proposed) {
+      std::vector<std::string> others;
+      for (const std::string& end : chain.ends) {
+        if (end != chain.tip) {
+          others.push_back(fmt::format("'{}'", end));
+        }
+      }
+      constexpr std::size_t kShown = 12;
+      const std::size_t more = others.size() > kShown ? others.size() - kShown : 0;
+      others.resize(others.size() - more);
+      model_.notes.push_back(fmt::format(
+          "the tip is taken to be '{}'; the other ends are {}{}; robot.tip or --tip names another",
+          chain.tip, join(others, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
+    }
+  }
+
+  void assume_missing_masses() {
+    for (const std::size_t i : assume_masses(model_, mass_notes_)) {
+      const Link& link = model_.links[i];
+      model_.reading.assumed_links.push_back(link.name);
+      add_inertial(link.name, link.inertial);
+    }
+  }
+
+  // Notes that a link of the file needs this <inertial>.
+  void add_inertial(const std::string& link, const Inertial& body) {
+    if (!repair_) {
+      return;
+    }
+    const std::size_t number = link_numbers_.at(link);
+    const std::size_t zeros = checked_.bodies[number].zero_inertial;
+    const UrdfEdit edit = zeros != 0
+                              ? UrdfEdit{zeros, UrdfEdit::Kind::replace, write_inertial(body)}
+                              : UrdfEdit{checked_.links[number].element, UrdfEdit::Kind::append,
+                                         write_inertial(body)};
+    mass_repairs_.add("a moving link without <inertial> gets one", fmt::format("'{}'", link),
+                      {edit});
+  }
+
   // Adds a link's mass and visual shapes to the body that carries it.
   void lump(const std::string& link, const Eigen::Isometry3d& pose, std::size_t carrier,
             const std::size_t* held) {
@@ -103,8 +159,13 @@ class Builder {
     Inertial inertial;
     if (from.inertial) {
       inertial = *from.inertial;
-    } else if (density_kg_per_m3_ > 0 && carrier > 0 && !from.shapes.empty()) {
-      inertial = calc_inertial(link, from.shapes);
+    } else if (carrier > 0 && from.has_faults) {
+      inertial.mass_kg = 1;  // so that it is not reported as missing; the robot is refused
+    } else if (density_kg_per_m3_ > 0 && carrier > 0 &&
+               !(from.shapes.empty() && from.unshown.empty())) {
+      if (!faults_.attempt([&] { inertial = calc_inertial(link, from); })) {
+        inertial.mass_kg = 1;
+      }
     }
     if (inertial.mass_kg > 0) {
       body.inertial = combine(body.inertial, transform(inertial, pose));
@@ -119,23 +180,39 @@ class Builder {
   }
 
   // Returns the mass properties of a link's shapes at the density, in the link's frame.
-  Inertial calc_inertial(const std::string& link, const std::vector<VisualShape>& shapes) {
+  Inertial calc_inertial(const std::string& link, const UrdfBody& from) {
+    const int line = checked_.links[link_numbers_.at(link)].line;
+    const auto fail = [&](const std::string& what) {
+      throw UrdfFault(line, fmt::format("{}: link '{}': {}", name_, link, what), what);
+    };
+    if (!from.unshown.empty()) {
+      fail(
+          fmt::format("its mass comes from its <visual> elements, and one of them has none ({}); "
+                      "correct it, or give the link an <inertial> element",
+                      from.unshown));
+    }
     Inertial sum;
-    for (const VisualShape& shape : shapes) {
-      std::optional<std::filesystem::path> file;
+    for (const VisualShape& shape : from.shapes) {
       try {
-        sum = combine(sum, calc_shape_inertial(shape, density_kg_per_m3_, folder_, file));
+        const ShapeMass mass = calc_shape_mass(shape, density_kg_per_m3_, meshes_);
+        sum = combine(sum, mass.inertial);
+        if (mass.file) {
+          model_.mass_files[shape.mesh_file] = *mass.file;
+        }
+        if (!mass.note.empty()) {
+          mass_notes_.push_back(fmt::format("link '{}': {}", link, mass.note));
+        }
       } catch (const Error& error) {
-        throw Error(error.kind(), fmt::format("{}: link '{}': {}", name_, link, error.what()));
-      }
-      if (file) {
-        model_.mass_files[shape.mesh_file] = *file;
+        fail(error.what());
       }
     }
     mass_notes_.push_back(fmt::format(
         "link '{}' has no <inertial>: {:.4g} kg and their inertia come from its {} at {} kg/m3",
-        link, sum.mass_kg, shapes.size() == 1 ? "shape" : fmt::format("{} shapes", shapes.size()),
+        link, sum.mass_kg,
+        from.shapes.size() == 1 ? "shape" : fmt::format("{} shapes", from.shapes.size()),
         density_kg_per_m3_));
+    model_.reading.density_kg_per_m3 = density_kg_per_m3_;
+    add_inertial(link, sum);
     return sum;
   }
 
@@ -146,15 +223,18 @@ class Builder {
         continue;
       }
       const std::string& joint = model_.joints[i].name;
-      fail_urdf(name_, checked_.chain.joints.at(joint),
-                fmt::format("joint '{}' moves link '{}', which has no mass{}; give it an "
-                            "<inertial> element{} (or make the joint fixed)",
-                            joint, link.name,
-                            density_kg_per_m3_ > 0 ? " and no <visual> to take it from" : "",
-                            density_kg_per_m3_ > 0
-                                ? ""
-                                : ", or set robot.density_kg_per_m3 to take it from the shapes of "
-                                  "its <visual> elements"));
+      faults_.attempt([&] {
+        fail_urdf(
+            name_, checked_.chain.joints.at(joint),
+            fmt::format("joint '{}' moves link '{}', which has no mass{}; give it an "
+                        "<inertial> element{} (or make the joint fixed)",
+                        joint, link.name,
+                        density_kg_per_m3_ > 0 ? " and no <visual> to take it from" : "",
+                        density_kg_per_m3_ > 0
+                            ? ""
+                            : ", or set robot.density_kg_per_m3 to take it from the shapes of "
+                              "its <visual> elements"));
+      });
     }
   }
 
@@ -176,17 +256,40 @@ class Builder {
       joints_below_;  // by parent link and name
   const std::string& name_;
   double density_kg_per_m3_;
-  std::filesystem::path folder_;
+  bool repair_;
+  MeshFinder meshes_;
+  UrdfFaults& faults_;
   RobotModel model_;
   std::vector<Held> held_;
   std::vector<std::string> mass_notes_;
+  UrdfRepairs mass_repairs_;
 };
+
+bool has_massless_link(const RobotModel& model) {
+  return std::ranges::any_of(model.links,
+                             [](const Link& link) { return link.inertial.mass_kg == 0; });
+}
 
 }  // namespace
 
 RobotModel build_model(const CheckedUrdf& checked, const std::string& name,
-                       const RobotOptions& options) {
-  return Builder(checked, name, options).build();
+                       const RobotOptions& options, UrdfFaults& faults) {
+  RobotOptions tried = options;
+  if (options.repair && options.mass_from_shapes && options.density_kg_per_m3 == 0) {
+    tried.repair = false;
+    UrdfFaults ignored(name);
+    if (has_massless_link(Builder(checked, name, tried, ignored).build())) {
+      // All masses come from shapes, or none: links of one arm are then comparable.
+      tried = options;
+      tried.density_kg_per_m3 = kRepairDensity_kg_per_m3;
+      UrdfFaults of_shapes(name);
+      RobotModel model = Builder(checked, name, tried, of_shapes).build();
+      if (of_shapes.count() == 0) {
+        return model;
+      }
+    }
+  }
+  return Builder(checked, name, options, faults).build();
 }
 
 }  // namespace armwright

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "sim/robot/urdf.hpp"
 
@@ -129,10 +128,6 @@ class Scanner {
 };
 
 }  // namespace
-
-void fail_urdf(const std::string& name, int line, const std::string& what) {
-  throw Error(ErrorKind::bad_data, fmt::format("{}:{}: {}", name, line, what));
-}
 
 void scan_urdf(std::string_view xml, const std::string& name) {
   if (xml.size() > kUrdfLimit_bytes) {

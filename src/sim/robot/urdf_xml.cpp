@@ -13,21 +13,19 @@ namespace armwright {
 
 using tinyxml2::XMLElement;
 
-namespace {
-
-// The largest accepted number. Larger ones are mistakes, and squares and products must not
-// overflow.
-constexpr double kLargest = 1e18;
-
-}  // namespace
-
 std::string shorten(std::string_view text) {
   constexpr std::size_t kShown = 80;
   return sanitize(text.substr(0, kShown)) + (text.size() > kShown ? "..." : "");
 }
 
 void UrdfXml::fail(const XMLElement& element, const std::string& what) const {
-  fail_urdf(name_, element.GetLineNum(), where_ + ": " + what);
+  const int line = element.GetLineNum();
+  throw UrdfFault(line, fmt::format("{}:{}: {}: {}", name_, line, where_, what), what);
+}
+
+void UrdfXml::fail_as_xacro(const XMLElement& element, const std::string& what) const {
+  throw Error(ErrorKind::bad_data, fmt::format("{}:{}: {}: {}; {}", name_, element.GetLineNum(),
+                                               where_, what, kXacroAdvice));
 }
 
 void UrdfXml::check_spelling(const XMLElement& at, const std::string& what,
@@ -43,8 +41,7 @@ void UrdfXml::check_names(const XMLElement& element, const std::vector<std::stri
   for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
        child = child->NextSiblingElement()) {
     if (std::string_view(child->Name()).starts_with("xacro:")) {
-      fail(*child,
-           fmt::format("<{}> is an element of xacro; {}", shorten(child->Name()), kXacroAdvice));
+      fail_as_xacro(*child, fmt::format("<{}> is an element of xacro", shorten(child->Name())));
     }
     check_spelling(*child, fmt::format("element in <{}>", element.Name()), child->Name(), children);
   }
@@ -77,8 +74,8 @@ const XMLElement& UrdfXml::get_only(const XMLElement& parent, const char* child_
 void UrdfXml::refuse_xacro(const XMLElement& element, const char* attribute,
                            std::string_view text) const {
   if (text.find("${") != std::string_view::npos || text.find("$(") != std::string_view::npos) {
-    fail(element, fmt::format("<{}>: {} is '{}', an expression of xacro; {}", element.Name(),
-                              attribute, shorten(text), kXacroAdvice));
+    fail_as_xacro(element, fmt::format("<{}>: {} is '{}', an expression of xacro", element.Name(),
+                                       attribute, shorten(text)));
   }
 }
 
@@ -117,7 +114,7 @@ std::vector<double> UrdfXml::read_numbers(const XMLElement& element, const char*
   for (std::size_t at = rest.find_first_not_of(kBlanks); at != std::string_view::npos;) {
     const std::size_t end = std::min(rest.find_first_of(kBlanks, at), rest.size());
     const auto number = parse_finite(rest.substr(at, end - at));
-    if (!number || std::abs(*number) > kLargest || numbers.size() == count) {
+    if (!number || std::abs(*number) > kUrdfLargest || numbers.size() == count) {
       numbers.clear();
       break;
     }
@@ -129,7 +126,8 @@ std::vector<double> UrdfXml::read_numbers(const XMLElement& element, const char*
          fmt::format(
              "<{}>: {} is '{}'; it must be {} of at most {:g}, with a decimal point and no unit",
              element.Name(), attribute, shorten(text),
-             count == 1 ? "one finite number" : fmt::format("{} finite numbers", count), kLargest));
+             count == 1 ? "one finite number" : fmt::format("{} finite numbers", count),
+             kUrdfLargest));
   }
   return numbers;
 }
@@ -143,10 +141,10 @@ double UrdfXml::read_number(const XMLElement& element, const char* attribute,
   return read_numbers(element, attribute, 1, {fallback}).front();
 }
 
-double UrdfXml::read_positive(const XMLElement& element, const char* attribute) const {
+double UrdfXml::read_not_negative(const XMLElement& element, const char* attribute) const {
   const double value = read_number(element, attribute);
-  if (value <= 0) {
-    fail(element, fmt::format("<{}>: {} is {}; it must be > 0", element.Name(), attribute, value));
+  if (value < 0) {
+    fail(element, fmt::format("<{}>: {} is {}; it must be >= 0", element.Name(), attribute, value));
   }
   return value;
 }

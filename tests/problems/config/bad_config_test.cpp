@@ -312,7 +312,8 @@ TEST(BadConfig, EveryUnknownKeyIsNamedAtOnce) {
                 "here: " +
                 kTaskKeys +
                 "\np.toml:7: unknown key robot.url. Valid here: urdf, mass_scale, base, "
-                "tip, density_kg_per_m3, dynamics, plant, friction_scale, armature_scale, "
+                "tip, density_kg_per_m3, dynamics, repair, mass_from_shapes, packages, plant, "
+                "friction_scale, armature_scale, "
                 "stiffness_scale, armature_share, elastic_hz, propose");
 }
 

@@ -354,6 +354,39 @@ TEST(RobotScene, ShowsAMeshThatCannotBeReadAsPlainShapesAndSaysSo) {
   }
 }
 
+TEST(RobotScene, SaysThatMassesAreAssumed) {
+  RobotModel arm = load_arm();
+  arm.reading.assumed_links = {"link_1", "link_2"};
+  std::vector<std::string> notes;
+  make_robot(arm, {}, kRobots, notes);
+  EXPECT_THAT(notes, ElementsAre("The description of the robot irb4600_40_255 states no mass for "
+                                 "link_1, link_2. Masses are assumed, and all results depend on "
+                                 "them."));
+}
+
+TEST(RobotScene, HasOneNoteForAllMeshesThatAreMissing) {
+  const TemporaryFolder folder;
+  std::vector<std::string> notes;
+  make_robot(make_arm(make_mesh_visual("package://bench_support/a.stl") +
+                          make_mesh_visual("package://bench_support/b.stl"),
+                      make_mesh_visual("package://bench_support/c.stl")),
+             {}, folder.path(), notes);
+  EXPECT_THAT(notes, ElementsAre("Plain shapes stand for meshes: 3 meshes were not found, e.g. "
+                                 "package://bench_support/a.stl; --package NAME=DIR "
+                                 "(robot.packages) says where a package is."));
+}
+
+TEST(RobotScene, LooksForMeshesInTheRobotsPackages) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "elsewhere/meshes/a.stl", kTextStl);
+  RobotModel arm = make_arm(make_mesh_visual("package://bench_support/meshes/a.stl"), "");
+  arm.reading.packages["bench_support"] = folder.path() / "elsewhere";
+  std::vector<std::string> notes;
+  const json robot = make_robot(arm, {}, folder.path() / "urdf", notes);
+  EXPECT_THAT(notes, IsEmpty());
+  EXPECT_EQ(robot["meshes"].size(), 1u);
+}
+
 TEST(RobotScene, LeavesOutWhatIsTooLarge) {
   const TemporaryFolder folder;
   std::string many = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";

@@ -213,28 +213,16 @@ INSTANTIATE_TEST_SUITE_P(
                    "unknown link 'flange?'. Valid: " + kLinks},
         OptionTrap{"base_below_tip",
                    {.base = "hand", .tip = "upper_arm"},
-                   "base",
-                   "the base 'hand' is not above the tip 'upper_arm', and the path from the "
-                   "root to the tip is 'world' -> 'mount' -> 'base_link' -> 'upper_arm'; name one "
-                   "of these"},
+                   "tip",
+                   "the tip 'upper_arm' is above the base 'hand' in the tree of links, and a chain "
+                   "runs down from its base to its tip; exchange them (--base upper_arm --tip "
+                   "hand), or name a tip below the base"},
         OptionTrap{"base_beside_tip",
                    {.base = "cable", .tip = "hand"},
                    "base",
                    "the base 'cable' is not above the tip 'hand', and the path from the root to "
                    "the tip is "
                    "'world' -> 'mount' -> 'base_link' -> 'upper_arm' -> 'hand'; name one of these"},
-        OptionTrap{"no_tip",
-                   {},
-                   "tip",
-                   "the links branch and end in 'beacon', 'cable', 'left_jaw', 'right_jaw', "
-                   "'tool0'; name the one whose frame is the tool centre point (or any other link) "
-                   "with robot.tip or --tip"},
-        OptionTrap{"no_tip_below_base",
-                   {.base = "hand"},
-                   "tip",
-                   "the links branch and end in 'left_jaw', 'right_jaw', 'tool0'; name the one "
-                   "whose frame is the tool centre point (or any other link) with robot.tip or "
-                   "--tip"},
         OptionTrap{"nothing_moves",
                    {.base = "hand", .tip = "tool0"},
                    "tip",
@@ -251,13 +239,90 @@ INSTANTIATE_TEST_SUITE_P(
                    "the density is -1 kg/m3; it must be finite and > 0, or 0 for none"}),
     [](const auto& trap) { return trap.param.name; });
 
-TEST(UrdfChain, NamesTheLeavesToChooseFrom) {
-  try {
-    parse_urdf(cell_xml(), "cell.urdf", {.base = "hand"});
-    FAIL();
-  } catch (const RobotOptionError& error) {
-    EXPECT_THAT(error.leaves(), ElementsAre("left_jaw", "right_jaw", "tool0"));
+// The leaves below each base, the frame of the tool among them has no tool's name.
+TEST(UrdfChain, NamesTheLeavesToChooseFromWhereNoneIsClearlyTheTool) {
+  std::string xml = cell_xml();
+  for (std::size_t at = xml.find("tool0"); at != std::string::npos; at = xml.find("tool0")) {
+    xml.replace(at, 5, "plate");
   }
+  const auto refusal_of = [&](const std::string& base) {
+    try {
+      parse_urdf(xml, "cell.urdf", {.base = base});
+    } catch (const RobotOptionError& error) {
+      EXPECT_EQ(error.option(), "tip");
+      return std::pair(std::string(error.what()), error.leaves());
+    }
+    return std::pair(std::string("no error"), std::vector<std::string>());
+  };
+  const auto [message, leaves] = refusal_of("");
+  EXPECT_EQ(message,
+            "cell.urdf: the links branch and end in 'beacon', 'cable', 'left_jaw', 'right_jaw', "
+            "'plate'; name the one whose frame is the tool centre point (or any other link) with "
+            "robot.tip or --tip");
+  EXPECT_THAT(leaves, ElementsAre("beacon", "cable", "left_jaw", "right_jaw", "plate"));
+  EXPECT_THAT(refusal_of("hand").second, ElementsAre("left_jaw", "right_jaw", "plate"));
+}
+
+TEST(UrdfChain, TakesTheOnlyLeafWithAToolsName) {
+  const RobotModel cell = load_cell("base_link", "");
+  EXPECT_EQ(cell.reading.tip, "tool0");
+  EXPECT_TRUE(cell.reading.is_tip_proposed);
+  EXPECT_EQ(cell.joint_count(), 2u);
+  EXPECT_THAT(cell.notes,
+              testing::Contains("the tip is taken to be 'tool0'; the other ends are 'beacon', "
+                                "'cable', 'left_jaw', 'right_jaw'; robot.tip or --tip names "
+                                "another"));
+  EXPECT_FALSE(load_cell().reading.is_tip_proposed) << "it was named";
+}
+
+// One joint turns a link; further links are on fixed joints. Each has the name of its parent.
+std::string make_tree(const std::vector<std::pair<std::string, std::string>>& fixed,
+                      const std::string& looks = "") {
+  std::string xml =
+      "<robot name=\"tree\"><link name=\"base_link\"/>"
+      "<joint name=\"turn\" type=\"continuous\"><parent link=\"base_link\"/>"
+      "<child link=\"arm\"/></joint><link name=\"arm\"><inertial><mass value=\"1\"/>"
+      "<inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>";
+  for (const auto& [parent, child] : fixed) {
+    xml += "<link name=\"" + child + "\">" + looks + "</link><joint name=\"to_" + child +
+           "\" type=\"fixed\"><parent link=\"" + parent + "\"/><child link=\"" + child +
+           "\"/></joint>";
+  }
+  return xml + "</robot>";
+}
+
+std::string propose_tip(const std::string& xml) {
+  try {
+    return parse_urdf(xml, "tree.urdf").reading.tip;
+  } catch (const RobotOptionError& error) {
+    return error.option() + " is missing";
+  }
+}
+
+TEST(UrdfChain, TakesNoLeafForTheTipThatDoesNotMove) {
+  EXPECT_EQ(propose_tip(make_tree({{"base_link", "base"}, {"arm", "plate"}})), "plate");
+  EXPECT_EQ(propose_tip(make_tree({{"base_link", "tool0"}, {"arm", "plate"}})), "plate");
+  EXPECT_EQ(propose_tip(make_tree({{"arm", "camera"}, {"arm", "plate"}})), "tip is missing");
+}
+
+TEST(UrdfChain, TakesNoCollisionHelperForTheTip) {
+  EXPECT_EQ(propose_tip(make_tree({{"arm", "arm_sc"}, {"arm", "plate"}})), "plate");
+  EXPECT_EQ(propose_tip(make_tree({{"arm", "arm_collision"}, {"arm", "plate"}})), "plate");
+  const std::string seen = "<visual><geometry><sphere radius=\"0.1\"/></geometry></visual>";
+  EXPECT_EQ(propose_tip(make_tree({{"arm", "arm_sc"}, {"arm", "plate"}}, seen)), "tip is missing")
+      << "a part that can be seen is no helper";
+}
+
+TEST(UrdfChain, KnowsTheNamesOfToolFrames) {
+  for (const std::string name : {"tool0", "my_tcp", "ee_link", "flange", "hand-TCP", "arm_ee",
+                                 "end_effector", "tool_frame", "left_eef"}) {
+    EXPECT_EQ(propose_tip(make_tree({{"arm", "camera"}, {"arm", name}})), name);
+  }
+  for (const std::string name : {"knee", "toolbox", "flanger", "tool0_camera"}) {
+    EXPECT_EQ(propose_tip(make_tree({{"arm", "camera"}, {"arm", name}})), "tip is missing") << name;
+  }
+  EXPECT_EQ(propose_tip(make_tree({{"arm", "left_tcp"}, {"arm", "right_tcp"}})), "tip is missing")
+      << "two tools";
 }
 
 // Each case changes one place of the file; the chain runs from base_link to the given tip.
@@ -294,9 +359,7 @@ INSTANTIATE_TEST_SUITE_P(
         CellTrap{"xacro_element", "<link name=\"world\"/>", "<xacro:world name=\"world\"/>",
                  "tool0",
                  "cell.urdf:9: the file: <xacro:world> is an element of xacro; xacro is not read: "
-                 "run xacro "
-                 "my.urdf.xacro > my.urdf (ROS), or python3 -m xacro my.urdf.xacro > my.urdf, and "
-                 "give armwright the result"},
+                 "expand the file and give armwright the result."},
         CellTrap{"xacro_name", "<link name=\"mount\"/>", "<link name=\"${prefix}mount\"/>", "tool0",
                  "cell.urdf:15: a link: <link>: name is '${prefix}mount', an expression of xacro; "
                  "xacro is not read"},
@@ -333,13 +396,6 @@ INSTANTIATE_TEST_SUITE_P(
                  "cell.urdf:19: joint 'lift': <axis>: xyz is '0 0 0', which has no direction"},
         CellTrap{"damping_of_no_size", "damping=\"0.5\"", "damping=\"-0.5\"", "tool0",
                  "cell.urdf:44: joint 'turn': <dynamics>: damping is -0.5; it must be >= 0"},
-        CellTrap{
-            "capsule_to_be_seen", "<box size=\"0.1 0.2 0.2\"/>",
-            "<capsule radius=\"0.1\" length=\"1\"/>", "tool0",
-            "cell.urdf:90: link 'hand': unknown shape 'capsule'. Valid: box, cylinder, sphere, "
-            "mesh (write a capsule as three <visual>, a cylinder and a sphere at each end, or "
-            "leave it "
-            "out: visuals only give looks, and mass if robot.density_kg_per_m3 is set)"},
         CellTrap{"no_mass_but_inertia", "<mass value=\"0\"/><inertia ixx=\"0\"",
                  "<mass value=\"0\"/><inertia ixx=\"1\"", "tool0",
                  "cell.urdf:126: link 'tool0': <mass>: value is 0; it must be > 0 (a frame without "
@@ -356,7 +412,7 @@ TEST(UrdfFile, RefusesXacroByItsName) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::bad_data);
-    EXPECT_THAT(error.what(), StartsWith("robots/my.urdf.xacro: xacro is not read: run xacro "));
+    EXPECT_THAT(error.what(), StartsWith("robots/my.urdf.xacro: xacro is not read: expand "));
   }
 }
 

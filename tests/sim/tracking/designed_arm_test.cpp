@@ -10,6 +10,7 @@
 #include "base/expect_error.hpp"
 #include "sim/engines/articulated/articulated_arm.hpp"
 #include "sim/engines/ode/ode_arm.hpp"
+#include "sim/kinematics/kinematics.hpp"
 #include "sim/tracking/design.hpp"
 
 namespace armwright {

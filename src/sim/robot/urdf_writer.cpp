@@ -1,4 +1,4 @@
-#include "sim/robot/urdf_effort_writer.hpp"
+#include "sim/robot/urdf_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -63,7 +63,9 @@ class Tags {
         quote = c;
       }
     }
-    tag.closes = !tag.opens || xml_[at_ - 1] == '/';
+    const bool is_whole = xml_[at_ - 1] == '/';
+    tag.closes = !tag.opens || is_whole;
+    tag.opens = tag.opens || is_whole;  // the parser takes "</NAME .../>" for an element
     tag.end = ++at_;
     return tag;
   }
@@ -144,17 +146,30 @@ struct Edit {
   std::string text;
 };
 
-// Inserts a <limit> before "</joint>", on a line of its own if "</joint>" has its own line.
-Edit insert_limit(std::string_view xml, const Tag& closing, const std::string& effort) {
-  std::string text = fmt::format("<limit effort=\"{}\" velocity=\"{}\"/>", effort,
-                                 format_exact(kNoVelocityLimit_rad_per_s));
-  const std::size_t before = xml.find_last_not_of(" \t", closing.begin - 1);
-  if (before != std::string_view::npos && xml[before] == '\n') {
-    const std::string indent(xml.substr(before + 1, closing.begin - before - 1));
-    const bool crlf = before > 0 && xml[before - 1] == '\r';
-    text = "  " + text + (crlf ? "\r\n" : "\n") + indent;
+// Returns the blanks before a tag if nothing else stands before it in its line.
+std::optional<std::string_view> find_indent(std::string_view xml, const Tag& tag) {
+  const std::size_t before =
+      tag.begin == 0 ? std::string_view::npos : xml.find_last_not_of(" \t", tag.begin - 1);
+  if (before == std::string_view::npos || xml[before] != '\n') {
+    return std::nullopt;
+  }
+  return xml.substr(before + 1, tag.begin - before - 1);
+}
+
+// Inserts an element before a closing tag, on a line of its own if the tag has its own line.
+Edit insert_before(std::string_view xml, const Tag& closing, std::string text) {
+  if (const auto indent = find_indent(xml, closing)) {
+    const std::size_t line_end = closing.begin - indent->size();  // after the '\n'
+    const bool crlf = line_end > 1 && xml[line_end - 2] == '\r';
+    text = fmt::format("  {}{}{}", text, crlf ? "\r\n" : "\n", *indent);
   }
   return {{closing.begin, closing.begin}, std::move(text)};
+}
+
+Edit insert_limit(std::string_view xml, const Tag& closing, const std::string& effort) {
+  return insert_before(xml, closing,
+                       fmt::format("<limit effort=\"{}\" velocity=\"{}\"/>", effort,
+                                   format_exact(kNoVelocityLimit_rad_per_s)));
 }
 
 // Returns one edit per joint in `efforts` and removes the joint from `efforts`.
@@ -200,15 +215,65 @@ std::string make_comment(std::string_view text) {
   return comment + "\n-->\n";
 }
 
+// Returns the place after the declarations (<?...?>) at the beginning.
 std::size_t find_beginning(std::string_view xml) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   const std::size_t start = xml.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-  if (!xml.substr(start).starts_with("<?xml")) {
+  std::size_t end = start;
+  for (std::size_t at = xml.find_first_not_of(kXmlBlanks, end);
+       at != std::string_view::npos && xml.substr(at).starts_with("<?");
+       at = xml.find_first_not_of(kXmlBlanks, end)) {
+    end = xml.find("?>", at + 2) + 2;
+  }
+  if (end == start) {
     return start;
   }
-  const std::size_t end = xml.find("?>", start) + 2;
   const std::size_t text = xml.find_first_not_of(" \t\r", end);
   return text != std::string_view::npos && xml[text] == '\n' ? text + 1 : end;
+}
+
+// Returns the text with the edits and the comment. Leaves out edits inside replaced text.
+std::string apply(std::string_view xml, std::vector<Edit> edits, std::string_view comment) {
+  const std::size_t beginning = find_beginning(xml);
+  edits.push_back({{beginning, beginning}, make_comment(comment)});
+  std::ranges::stable_sort(edits, {}, [](const Edit& edit) { return edit.place.begin; });
+  std::string result;
+  std::size_t copied = 0;
+  for (const Edit& edit : edits) {
+    if (edit.place.begin < copied) {
+      continue;
+    }
+    result += xml.substr(copied, edit.place.begin - copied);
+    result += edit.text;
+    copied = edit.place.end;
+  }
+  result += xml.substr(copied);
+  return result;
+}
+
+// Removes an element, and its lines if nothing else stands in them.
+Edit remove_element(std::string_view xml, const Tag& opening, const Tag& closing) {
+  TextRange place{opening.begin, closing.end};
+  const auto indent = find_indent(xml, opening);
+  const std::size_t after = xml.find_first_not_of(" \t\r", closing.end);
+  if (indent && after != std::string_view::npos && xml[after] == '\n') {
+    place = {opening.begin - indent->size(), after + 1};
+  }
+  return {place, ""};
+}
+
+Edit make_edit(std::string_view xml, const UrdfEdit& wanted, const Tag& opening,
+               const Tag& closing) {
+  if (wanted.kind == UrdfEdit::Kind::remove) {
+    return remove_element(xml, opening, closing);
+  }
+  if (wanted.kind == UrdfEdit::Kind::replace) {
+    return {{opening.begin, closing.end}, wanted.xml};
+  }
+  if (!opening.closes) {
+    return insert_before(xml, closing, wanted.xml);
+  }
+  return {{opening.end - 2, opening.end}, fmt::format(">{}</{}>", wanted.xml, opening.name)};
 }
 
 }  // namespace
@@ -220,18 +285,40 @@ std::string set_effort_limits(std::string_view xml, const std::string& name,
   if (!efforts.empty()) {
     fail_urdf(name, 1, fmt::format("has no joint '{}'", sanitize(efforts.begin()->first)));
   }
-  const std::size_t beginning = find_beginning(xml);
-  edits.push_back({{beginning, beginning}, make_comment(comment)});
-  std::ranges::sort(edits, {}, [](const Edit& edit) { return edit.place.begin; });
-  std::string result;
-  std::size_t copied = 0;
-  for (const Edit& edit : edits) {
-    result += xml.substr(copied, edit.place.begin - copied);
-    result += edit.text;
-    copied = edit.place.end;
+  return apply(xml, std::move(edits), comment);
+}
+
+std::string apply_repairs(std::string_view xml, const std::string& name,
+                          std::span<const UrdfRepair> repairs, std::string_view comment) {
+  scan_urdf(xml, name);
+  std::multimap<std::size_t, const UrdfEdit*> wanted;  // by element
+  for (const UrdfRepair& repair : repairs) {
+    for (const UrdfEdit& edit : repair.edits) {
+      wanted.emplace(edit.element, &edit);
+    }
   }
-  result += xml.substr(copied);
-  return result;
+  struct Open {
+    Tag tag;
+    std::size_t element;
+  };
+  std::vector<Edit> edits;
+  std::vector<Open> open;
+  std::size_t count = 0;
+  Tags tags(xml);
+  while (const auto tag = tags.next()) {
+    if (tag->opens) {
+      open.push_back({*tag, count++});
+    }
+    if (tag->closes && !open.empty()) {  // the parser ignores what follows the root element
+      const Open element = open.back();
+      open.pop_back();
+      const auto [first, last] = wanted.equal_range(element.element);
+      for (auto edit = first; edit != last; ++edit) {
+        edits.push_back(make_edit(xml, *edit->second, element.tag, *tag));
+      }
+    }
+  }
+  return apply(xml, std::move(edits), comment);
 }
 
 }  // namespace armwright

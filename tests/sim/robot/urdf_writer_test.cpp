@@ -1,4 +1,4 @@
-#include "sim/robot/urdf_effort_writer.hpp"
+#include "sim/robot/urdf_writer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,16 @@
-// Changes the effort limits in the text of a URDF and leaves every other byte as it was.
+// Changes the text of a URDF: its effort limits, or what the reader had to repair. Every other byte
+// stays as it was.
 //
 // The text must be one that load_urdf() accepts. This code only finds the elements' places and
 // validates nothing.
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
+
+#include "sim/robot/robot_model.hpp"
 
 namespace armwright {
 
@@ -22,5 +26,11 @@ inline constexpr double kNoVelocityLimit_rad_per_s = 1e6;
 // name in messages. Throws Error{bad_data} if a joint does not exist.
 std::string set_effort_limits(std::string_view xml, const std::string& name,
                               std::map<std::string, double> efforts, std::string_view comment);
+
+// Returns the text with the edits of the repairs, which load_urdf() reported for the same text. With
+// the same options for base and tip, the result is the same robot without any repair. `comment` is
+// inserted as set_effort_limits() does.
+std::string apply_repairs(std::string_view xml, const std::string& name,
+                          std::span<const UrdfRepair> repairs, std::string_view comment);
 
 }  // namespace armwright
