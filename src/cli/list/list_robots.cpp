@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include "base/error.hpp"
@@ -99,15 +100,17 @@ struct Posture {
 Posture find_posture(const RobotModel& robot) {
   try {
     TrackingTask task;
-    task.tool.orientation = propose_orientation(robot, task.tool);
-    return {propose_workspace(robot, task, {}).home, true};
-  } catch (const Error&) {  // the arm has no workspace, which the problem says with its reason
-    Posture posture;
-    for (const Joint& joint : robot.joints) {
-      posture.q.push_back(std::clamp(0.0, joint.lower, joint.upper));
+    task.tool.axis = propose_tool_axis(robot);
+    if (const auto place = propose_workspace(robot, task, {}, std::nullopt)) {
+      return {place->home, true};
     }
-    return posture;
+  } catch (const Error&) {  // the problem says with its reason why the arm has no workspace
   }
+  Posture posture;
+  for (const Joint& joint : robot.joints) {
+    posture.q.push_back(std::clamp(0.0, joint.lower, joint.upper));
+  }
+  return posture;
 }
 
 // Returns the names of the meshes that are missing, each once.

@@ -74,8 +74,7 @@ std::vector<std::string> list_first_proposal(const nlohmann::json& recorded) {
   const bool is_first = start != nullptr && *start == kProposedStart &&
                         find("/variables/start_bandwidth_rad_per_s") == nullptr;
   if (is_first) {
-    settings.push_back(
-        fmt::format("variables.start_bandwidth_rad_per_s={}", kStartOfVersion1));
+    settings.push_back(fmt::format("variables.start_bandwidth_rad_per_s={}", kStartOfVersion1));
   }
   if (proposes == nullptr || *proposes != true || (start != nullptr && !is_first)) {
     return settings;
@@ -95,9 +94,8 @@ std::vector<std::string> list_first_proposal(const nlohmann::json& recorded) {
     settings.push_back(fmt::format("control.period_s={}", *kControlPeriod.fallback));
   }
   const nlohmann::json* const substeps = find("/physics/substeps");
-  settings.push_back(fmt::format("physics.substeps={}", substeps == nullptr
-                                                            ? "1"
-                                                            : write_toml(*substeps)));
+  settings.push_back(
+      fmt::format("physics.substeps={}", substeps == nullptr ? "1" : write_toml(*substeps)));
   return settings;
 }
 

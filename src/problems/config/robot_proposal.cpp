@@ -75,28 +75,14 @@ void check_place(const ConfigTable& task, const ConfigTable& workspace,
   }
 }
 
-// Returns a workspace above the floor. An arm that does not stand on a floor gets one without, and a
-// note says so. Throws Error{bad_data} if there is no place to work.
+// Throws Error{bad_data} if there is no place to work. Notes say what the place lacks.
 WorkspaceProposal find_place(const ConfigTable& task_table, TrackingConfig& config) {
   TrackingTask& task = config.task;
-  const bool may_fall = !task.floor_m;
-  if (may_fall && config.robot.joints.front().origin.translation().z() >= 0) {
-    task.floor_m = 0;
-  }
   std::optional<ToolOrientation> wanted;
   if (task_table.has(kTaskOrientation)) {
     wanted = task.tool.orientation;
   }
-  auto found = propose_workspace(config.robot, task, config.workspace, wanted);
-  if (!found && may_fall && task.floor_m) {
-    task.floor_m.reset();
-    found = propose_workspace(config.robot, task, config.workspace, wanted);
-    if (found) {
-      config.robot.notes.emplace_back(
-          "no workspace was found above a floor at height 0, so the proposed one may lie below it; "
-          "give task.floor_m if there is a floor");
-    }
-  }
+  const auto found = propose_workspace(config.robot, task, config.workspace, wanted);
   if (!found) {
     refuse_proposal(
         config.robot,
@@ -106,6 +92,11 @@ WorkspaceProposal find_place(const ConfigTable& task_table, TrackingConfig& conf
                     "task.home yourself",
                     task.floor_m ? fmt::format("above task.floor_m = {:g} ", *task.floor_m) : "",
                     wanted ? tool_orientation_names()[static_cast<std::size_t>(*wanted)] : "free"));
+  }
+  if (!found->floor_m) {
+    config.robot.notes.emplace_back(
+        "no workspace was found above a floor at height 0, so the proposed one may lie below it; "
+        "give task.floor_m if there is a floor");
   }
   if (!found->points_down && found->orientation != ToolOrientation::free) {
     config.robot.notes.emplace_back(
@@ -148,6 +139,7 @@ void propose_place(const ConfigTable& task_table, const ConfigTable& workspace,
   task_table.settle(kTaskHome, proposal.home);
   task_table.settle(kTaskOrientation,
                     tool_orientation_names()[static_cast<std::size_t>(proposal.orientation)]);
+  task.floor_m = proposal.floor_m;
   if (task.floor_m) {
     task_table.settle(kTaskFloor, *task.floor_m);
   }

@@ -323,7 +323,11 @@ std::optional<WorkspaceProposal> Search::try_homes(const Postures& homes, double
       set_radius(sphere, radius_m);
       if (can_follow(from_home, robot_, clearance_ ? &*clearance_ : nullptr, holding_, sphere,
                      centre.turn, home)) {
-        best = WorkspaceProposal{home, centre, sphere, task_.tool.orientation, false};
+        best = WorkspaceProposal{.home = home,
+                                 .centre = centre,
+                                 .sphere = sphere,
+                                 .orientation = task_.tool.orientation,
+                                 .floor_m = task_.floor_m};
         least_m = radius_m / kRadiusStep;
         break;
       }
@@ -450,10 +454,12 @@ Eigen::Vector3d propose_tool_axis(const RobotModel& robot) {
   return axis;
 }
 
-std::optional<WorkspaceProposal> propose_workspace(const RobotModel& robot, TrackingTask task,
-                                                   WorkspaceSphere sphere,
-                                                   std::optional<ToolOrientation> orientation) {
-  const ReadStep step(fmt::format("proposing a workspace for robot '{}'", sanitize(robot.name)));
+namespace {
+
+// Returns a workspace that keeps to the task's floor, if it has one.
+std::optional<WorkspaceProposal> find_workspace(const RobotModel& robot, TrackingTask task,
+                                                const WorkspaceSphere& sphere,
+                                                std::optional<ToolOrientation> orientation) {
   if (!orientation && task.kinematics != KinematicsChoice::numeric &&
       ElbowUpKinematics::make_if_suited(robot, task.ik_bug)) {
     orientation = ToolOrientation::free;  // the closed form itself keeps the last link upright
@@ -488,6 +494,22 @@ std::optional<WorkspaceProposal> propose_workspace(const RobotModel& robot, Trac
     }
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<WorkspaceProposal> propose_workspace(const RobotModel& robot, TrackingTask task,
+                                                   const WorkspaceSphere& sphere,
+                                                   std::optional<ToolOrientation> orientation) {
+  const ReadStep step(fmt::format("proposing a workspace for robot '{}'", sanitize(robot.name)));
+  if (!task.floor_m && robot.joints.front().origin.translation().z() >= 0) {
+    task.floor_m = 0;
+    if (auto found = find_workspace(robot, task, sphere, orientation)) {
+      return found;
+    }
+    task.floor_m.reset();
+  }
+  return find_workspace(robot, task, sphere, orientation);
 }
 
 std::vector<TestCase> make_proposal_cases(const WorkspaceSphere& sphere) {

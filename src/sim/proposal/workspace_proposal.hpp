@@ -54,14 +54,16 @@ struct WorkspaceProposal {
   WorkspaceSphere sphere;
   ToolOrientation orientation = ToolOrientation::free;
   bool points_down = false;  // the tool does at home, and its orientation is tracked
+  std::optional<double> floor_m;
 };
 // Returns a proposal for a task. Uses `points` of `sphere`, and the task's floor and tool.axis;
-// tool.turn need not be set. `orientation` is the one to track; nothing: the first possible one.
+// tool.turn need not be set. A task without floor gets one at height 0 if the arm stands above it
+// and can work there. `orientation` is the one to track; nothing: the first possible one.
 // Returns nothing if no place is found where the tool can move. Throws Error{bad_data} if the
 // orientation is not possible, if the tip moves neither in space nor in a plane, and if the motors
 // cannot hold the arm.
 std::optional<WorkspaceProposal> propose_workspace(const RobotModel& robot, TrackingTask task,
-                                                   WorkspaceSphere sphere,
+                                                   const WorkspaceSphere& sphere,
                                                    std::optional<ToolOrientation> orientation);
 
 // Returns the cases of kProposalSet in the sphere.

@@ -430,14 +430,12 @@ void keep_old_problems(const std::filesystem::path& recorded, StudyPlan& plan) {
   const RawPlan raw = read_study_file(recorded, ignored);
   for (StudyProblem& problem : plan.problems) {
     const auto found = std::ranges::find(raw.problems, problem.label, &NamedProblem::label);
-    const TrackingProblem* const arm = problem.loaded.tracking();
-    const bool has_changed =
-        arm != nullptr && (!arm->setup().has_closed_form() || arm->config().own_effort_limits);
-    if (found != raw.problems.end() && (problem.loaded.function || has_changed) &&
+    const bool may_be_old = problem.loaded.function || problem.loaded.tracking() != nullptr;
+    if (found != raw.problems.end() && may_be_old &&
         found->configuration_sha256 != calc_configuration_hash(problem.loaded)) {
       NamedProblem named = *found;
       named.name = problem.name;
-      load_as_recorded(named, problem);
+      load_as_recorded(named, recorded.parent_path(), problem);
     }
   }
   load_methods(plan);
