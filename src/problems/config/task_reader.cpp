@@ -176,8 +176,10 @@ const SettingTable kTaskSettings{
                  &kTaskRest, &kTaskCountFirstPoint, &kTaskIkBug, &kTaskLoad, &kTaskLoadCom,
                  &kTaskLoadInertia, &kTaskKinematics, &kTaskSolver, &kTaskLimits, &kTaskOrientation,
                  &kTaskToolRpy, &kTaskToolAxis, &kTaskOrientationArm, &kTaskHome}};
-const SettingTable kControlSettings{.key = "control",
-                                    .settings = {&kControlPeriod, &kControlController}};
+const SettingTable kControlSettings{
+    .key = "control",
+    .settings = {&kControlPeriod, &kControlController, &kControlInterface, &kControlBandwidth,
+                 &kControlDelay, &kControlResolution, &kControlSlideResolution}};
 const SettingTable kWorkspaceSettings{
     .key = "workspace",
     .settings = {&kWorkspaceCentre, &kWorkspaceRadius, &kWorkspaceNormal, &kWorkspaceShortestMove,

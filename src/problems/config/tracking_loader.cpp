@@ -262,6 +262,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   const ConfigTable control = table.get_table_or_empty(kControlSettings);
   config.task = read_task(task, control);
   config.task.physics = read_physics(physics);
+  read_drives(control, config.task);
   if (!config.task.home.empty() && config.task.home.size() != config.robot.joint_count()) {
     task.refuse(kTaskHome, fmt::format("it must hold {} numbers, one a joint of the robot",
                                        config.robot.joint_count()));

@@ -71,15 +71,33 @@ void set_start_speed(const ConfigTable& variables, TrackingConfig& config) {
   }
 }
 
-// Converts the start to the controller that the problem names, and asks for the feed-forward that
-// the controller needs.
-void apply_controller(const ConfigTable& control, TrackingConfig& config) {
+// Returns the controller that the problem names. Without a name it is that of the start or, if that
+// does not command what the drives take, the first one that does.
+std::string choose_controller(const ConfigTable& control, const TrackingConfig& config) {
+  const ControlInterface interface = config.task.drives.interface;
   if (const auto name = control.find(kControlController)) {
-    try {
-      config.start = convert_design(config.start, *name, config.task.control_period_s);
-    } catch (const Error& error) {
-      control.refuse(kControlController, error.what());
-    }
+    return *name;
+  }
+  const std::string& own = config.start.controller;
+  if (interface == ControlInterface::effort || find_controller(own).interface == interface) {
+    return own;
+  }
+  return std::ranges::find(controller_table(), interface, &ControllerRow::interface)->name;
+}
+
+// Converts the start to the controller of the problem, and asks for the feed-forward that the
+// controller needs.
+void apply_controller(const ConfigTable& control, TrackingConfig& config) {
+  const ArmDrives& drives = config.task.drives;
+  const std::string name = choose_controller(control, config);
+  const AnySetting& source =
+      control.has(kControlController) ? kControlController : kControlInterface;
+  try {
+    check_interface(find_controller(name), drives);
+    config.start =
+        convert_design(config.start, name, config.task.control_period_s, drives.calc_lag_s());
+  } catch (const Error& error) {
+    control.refuse(source, error.what());
   }
   config.task.feed_forward = find_controller(config.start.controller).feed_forward;
 }

@@ -3,11 +3,13 @@
 // numbers that carry derivatives. A law has these members:
 //   kName, kSummary, kFormula    texts
 //   kGains                       its design variables, an array of Gain
+//   kInterface                   what it commands
 //   kStates                      count of numbers that it keeps from step to step, all 0 at first
 //   kFeedForward                 which efforts it needs in `feed_forward`
 //   convert(PidStart, own)       computes start values of its gains from those of a PID
-//   calc(in, gain, state)        returns the wanted effort and updates its state
-// All efforts are clamped alike: u = min(max, max(min, wanted)). Anti-windup: `integrating` is 0
+//   calc(in, gain, state)        returns the wanted command and updates its state
+// The command is an effort, or what a drive takes (kInterface). All commands are clamped alike:
+// u = min(max, max(min, wanted)). Anti-windup: `integrating` is 0
 // after a clamped step, otherwise 1, and every integral is summed as
 //   integral + integrating x h x integrand.
 // Lanes cannot branch on numbers: use select(), min() and max() instead.

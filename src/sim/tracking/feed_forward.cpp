@@ -13,18 +13,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "sim/dynamics/chain_dynamics.hpp"
-#include "sim/dynamics/chain_model.hpp"
+#include "sim/dynamics/arm_equations.hpp"
 #include "sim/dynamics/joint_effort.hpp"
 #include "sim/kinematics/kinematics.hpp"
 #include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 namespace {
-
-struct FeedForwardLevel;  // tags the code that this file instantiates
-using FeedForwardNumber = lanes::Single<double, FeedForwardLevel>;
-using FeedForwardChain = articulated::ChainShape<0, articulated::kAnyShape, true>;
 
 // Returns the effort that a joint's plant takes from the motor.
 double calc_plant_effort(const Joint& joint, double q, double rate, double acceleration) {
@@ -35,6 +30,16 @@ double calc_plant_effort(const Joint& joint, double q, double rate, double accel
 }
 
 }  // namespace
+
+std::vector<double> TrackingSetup::calc_holding_efforts(std::span<const double> q) const {
+  articulated::ArmEquations equations(*chain_);
+  equations.set(q, std::vector<double>(q.size(), 0));
+  std::vector<double> efforts;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    efforts.push_back(equations.bias(i) - articulated::calc_counterbalance(robot_.joints[i], q[i]));
+  }
+  return efforts;
+}
 
 void TrackingSetup::fill_feed_forward(TargetTable& table) const {
   const FeedForward kind = task_.feed_forward;
@@ -49,44 +54,30 @@ void TrackingSetup::fill_feed_forward(TargetTable& table) const {
     return (chain.flags()[i] & articulated::kPrismatic) == 0 ? JointKind::revolute
                                                              : JointKind::prismatic;
   };
-  const std::vector<FeedForwardNumber> model(chain.numbers().begin(), chain.numbers().end());
-  std::vector<FeedForwardNumber> scratch(
-      static_cast<std::size_t>(articulated::calc_dynamics_packs(chain.joints())),
-      FeedForwardNumber(0));
-  FeedForwardNumber* memory = scratch.data();
-  articulated::ChainDynamics<FeedForwardNumber, FeedForwardChain> dynamics(
-      FeedForwardChain(chain.joints(), chain.flags().data(), chain.tilted_gravity()), model.data(),
-      memory);
+  articulated::ArmEquations equations(chain);
   // The state at the start of the period, and the acceleration during it.
-  std::vector<FeedForwardNumber> q(n), rate(n, FeedForwardNumber(0)),
-      acceleration(n, FeedForwardNumber(0));
-  const double* before = table.start_positions.data();
+  std::vector<double> rate(n, 0), acceleration(n, 0);
+  std::span<const double> before = table.start_positions;
   table.feed_forward_effort.resize(table.joint_positions.size());
   for (int step = 0; step < table.steps; ++step) {
-    const double* const target = table.positions(step).data();
-    std::vector<FeedForwardNumber> next = rate;
+    const std::span<const double> target = table.positions(step);
+    std::vector<double> next = rate;
     if (kind == FeedForward::inverse_dynamics) {
       for (std::size_t i = 0; i < n; ++i) {
         next[i] = calc_displacement(joint_kind(i), before[i], target[i]) / period_s;
-        acceleration[i] = (next[i].v - rate[i].v) / period_s;
+        acceleration[i] = (next[i] - rate[i]) / period_s;
       }
     }
-    for (std::size_t i = 0; i < n; ++i) {
-      q[i] = before[i];
-    }
-    dynamics.set_posture(q.data(), true);
-    dynamics.calc_equations(q.data(), rate.data());
+    equations.set(before, rate);
     double* const efforts = table.feed_forward_effort.data() + static_cast<std::size_t>(step) * n;
     for (std::size_t i = 0; i < n; ++i) {
-      double effort = dynamics.bias(static_cast<int>(i)).v;
+      double effort = equations.bias(i);
       for (std::size_t j = 0; j < n; ++j) {
-        effort +=
-            dynamics.mass(static_cast<int>(std::max(i, j)), static_cast<int>(std::min(i, j))).v *
-            acceleration[j].v;
+        effort += equations.mass(i, j) * acceleration[j];
       }
       efforts[i] = effort;
       if (has_plant) {
-        efforts[i] += calc_plant_effort(robot_.joints[i], before[i], next[i].v, acceleration[i].v);
+        efforts[i] += calc_plant_effort(robot_.joints[i], before[i], next[i], acceleration[i]);
       }
     }
     rate = next;
