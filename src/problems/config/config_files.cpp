@@ -15,7 +15,7 @@ namespace armwright {
 namespace {
 
 std::string get_extension(std::string_view kind) {
-  return kind == "robots" ? ".urdf" : ".toml";
+  return kind == "robots" ? ".urdf" : kind == "gains" ? ".yaml" : ".toml";
 }
 
 // Robots and their plants stand in one folder.
@@ -119,7 +119,8 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
   const std::filesystem::path path(name_or_path);
   const bool has_folder = name_or_path.find('/') != std::string_view::npos;
   const bool is_xacro = kind == "robots" && path.extension() == ".xacro";  // load_urdf() refuses it
-  if (has_folder || path.extension() == extension || is_xacro) {
+  const bool is_yml = kind == "gains" && path.extension() == ".yml";
+  if (has_folder || path.extension() == extension || is_xacro || is_yml) {
     for (const auto& candidate : {beside / path, path}) {
       if (is_file(candidate)) {
         return candidate;

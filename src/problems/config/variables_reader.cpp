@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "problems/config/design_file.hpp"
+#include "problems/config/gains_file.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "problems/tracking/tracking_config.hpp"
 #include "sim/tracking/design.hpp"
@@ -17,7 +18,8 @@ namespace armwright {
 
 const Setting<std::string> kVariablesStart{
     "start", kNoDefault,
-    "design to start from: a file beside this one, the name of a shipped design, or proposed"};
+    "design to start from: a file beside this one, the name of a shipped design, proposed, or "
+    "gains of ros2_control (FILE.yaml)"};
 
 namespace {
 
@@ -201,6 +203,10 @@ void read_variables(const ConfigTable& variables, const ConfigTable& control,
                     LoadedProblem& loaded) {
   if (variables.get(kVariablesStart) == kProposedStart) {
     name_robot_file(urdf, [&] { config.start = propose_start(config); });
+  } else if (is_gains_file(variables.get(kVariablesStart))) {
+    const auto start = resolve_named(variables, kVariablesStart, "gains");
+    config.start = load_gains(start, config.robot, config.task.drives);
+    add_input(loaded, start);
   } else {
     const auto start = resolve_named(variables, kVariablesStart, "designs");
     config.start = load_design(start.string()).design;

@@ -105,5 +105,32 @@ TEST(Drives, OfFiniteResolutionHaveNoJacobian) {
   EXPECT_THAT(coarse.problem->description().jacobian_advice, HasSubstr("control.resolution_rad"));
 }
 
+TEST(Drives, StartFromGainsOfRos2Control) {
+  const ProblemFolder folder;
+  std::string joints;
+  for (const char* joint : {"joint_1", "joint_2", "joint_3", "joint_4"}) {
+    joints +=
+        std::string("      ") + joint + ": {p: 12.0, i: 1.0, d: 0.1, ff_velocity_scale: 1.0}\n";
+  }
+  folder.write("c.yaml",
+               "c:\n  ros__parameters:\n    command_interfaces: [velocity]\n    gains:\n" + joints);
+  const std::string start = "variables.start=" + folder.path("c.yaml");
+  const LoadedProblem loaded = load_driven({start, R"(variables.optimize=["gains"])"});
+  EXPECT_EQ(loaded.tracking()->config().start.joints[3].gains,
+            (std::vector<double>{12, 1, 0.1, 1}));
+  EXPECT_EQ(loaded.problem->description().variables[0].start, 12);
+  EXPECT_THAT(loaded.input_hashes, testing::Contains(testing::Key(HasSubstr("c.yaml"))));
+  try {
+    load_plain({start});
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_data);
+    EXPECT_THAT(error.what(), HasSubstr("c.yaml:3: controller 'c' commands 'velocity', but "
+                                        "control.interface is 'effort'"));
+  }
+  EXPECT_THAT(usage_error_of([] { load_driven({"variables.start=none.yaml"}); }),
+              HasSubstr("there is no file 'none.yaml'"));
+}
+
 }  // namespace
 }  // namespace armwright
