@@ -137,9 +137,75 @@ TEST_F(Deliverables, Ros2sParametersAreReadStrictly) {
   };
   EXPECT_THAT(refusal_of("        p: ", "        d: 1.0\n        p: "), HasSubstr("twice"));
   EXPECT_THAT(refusal_of("ff_velocity_scale: 0.0", "ff_velocity_scale: 0"), HasSubstr("no float"));
-  EXPECT_THAT(refusal_of("i_clamp:", "i_clamp_max:"), HasSubstr("unknown 'i_clamp_max'"));
+  EXPECT_THAT(refusal_of("i_clamp:", "normalize_error:"), HasSubstr("unknown 'normalize_error'"));
+  EXPECT_THAT(refusal_of("\"conditional_integration\"", "\"clamping\""),
+              HasSubstr("against the rule one_of"));
+  EXPECT_THAT(refusal_of("- \"velocity\"", "- \"effort\""), HasSubstr("the rule subset_of"));
   EXPECT_THAT(refusal_of("\"joint_2\":", "\"joint_5\":"), HasSubstr("no joint_2"));
   EXPECT_THAT(refusal_of("update_rate: 100", "update_rate: 100.5"), HasSubstr("update_rate"));
+}
+
+// Drives that take velocities or positions: the export is right for every distribution, and can be
+// the start of another run.
+TEST_F(Deliverables, DrivesAreExportedAndImportedAgain) {
+  for (const std::string interface : {"velocity", "position"}) {
+    SCOPED_TRACE(interface);
+    std::string xml = read_text(path("arm.urdf"));
+    xml = replace(xml, "type=\"continuous\">",
+                  "type=\"continuous\"><limit effort=\"1e5\" velocity=\"3\"/>");
+    std::ofstream(path("limited.urdf")) << xml;
+    const std::vector<std::string> settings = {
+        "--set", "robot.urdf=limited.urdf", "--set", "control.interface=" + interface,
+        "--set", "physics.substeps=20",     "--set", "variables.optimize=[\"gains\"]"};
+    std::vector<std::string> words = {"./p.toml", "--budget", "80"};
+    words.insert(words.end(), settings.begin(), settings.end());
+    optimize(interface, words);
+    export_as("ros2-control", interface + "-ros2", interface);
+    const json all =
+        json::parse(read_with("read_ros2_control.py", path(interface + "-ros2")), nullptr, false);
+    ASSERT_TRUE(all.is_object());
+    EXPECT_EQ(all.contains("humble"), interface == "velocity");
+    const DesignFile winner = load_design(path(interface + "/winner.toml").string());
+    EXPECT_EQ(winner.design.controller, "pid_" + interface);
+    for (const auto& [distribution, file] : all.items()) {
+      EXPECT_EQ(file.at("interface"), interface);
+      const json& gains = file.at("gains").at("joint_2");
+      EXPECT_EQ(gains.at("p"), winner.design.joints[1].gains[0]);
+      EXPECT_EQ(gains.at("i"), winner.design.joints[1].gains[1]);
+      EXPECT_EQ(gains.at("d"), winner.design.joints[1].gains[2]);
+      if (interface == "velocity") {
+        EXPECT_EQ(gains.at("ff_velocity_scale"), winner.design.joints[1].gains[3]);
+      }
+      // The export as a start is as good as the winner. Its effort limits are those of the URDF,
+      // which the winner's drives reach now and then.
+      std::vector<std::string> evaluate = {
+          "evaluate",
+          "start",
+          "--problem",
+          "./p.toml",
+          "--json",
+          "--set",
+          "variables.start=" + interface + "-ros2/controllers-" + distribution + ".yaml"};
+      evaluate.insert(evaluate.end(), settings.begin(), settings.end());
+      for (const char* word : {"--engine", "articulated", "--simd", "sse2"}) {
+        evaluate.emplace_back(word);
+      }
+      const Outcome start = run(evaluate);
+      ASSERT_EQ(start.exit_code, 0) << start.err;
+      const RunResult result = load_result(path(interface));
+      const double mean_m = result.test_summary.mean.value();
+      EXPECT_NEAR(json::parse(start.out).at("summary").at("mean_error_m").get<double>(), mean_m,
+                  0.02 * mean_m);
+    }
+    // A file with other gains is not taken for an export of this robot.
+    std::vector<std::string> foreign = {
+        "evaluate", "start", "--problem",
+        "q2-e6",    "--set", "variables.start=" + interface + "-ros2/controllers-kilted.yaml"};
+    foreign.insert(foreign.end(), settings.begin() + 2, settings.end());
+    expect_refused(foreign, 4,
+                   AllOf(HasSubstr("controllers-kilted.yaml:"),
+                         HasSubstr("but the robot's are joint_1, joint_2")));
+  }
 }
 
 TEST_F(Deliverables, TheUrdfIsTheSameRobotWithTheWinnersLimits) {

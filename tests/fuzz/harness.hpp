@@ -50,6 +50,7 @@ void fuzz_design(std::string_view input);
 void fuzz_urdf(std::string_view input);
 void fuzz_test_cases(std::string_view input);
 void fuzz_path(std::string_view input);
+void fuzz_gains(std::string_view input);
 void fuzz_messages(std::string_view input);
 void fuzz_descriptor(std::string_view input);
 void fuzz_journal(std::string_view input);

@@ -34,6 +34,7 @@ constexpr HarnessRow kHarnesses[] = {
     {"export_csv", fuzz_export_csv},
     {"export_json", fuzz_export_json},
     {"path", fuzz_path},
+    {"gains", fuzz_gains},
     {"http_request", fuzz_http_request},
 };
 

@@ -20,17 +20,19 @@ namespace {
 
 class UnderController : public testing::TestWithParam<std::string> {
  protected:
-  static TrackingTask make_task() {
-    TrackingTask task = make_e6_task();
-    task.feed_forward = find_controller(GetParam()).feed_forward;
-    return task;
+  static TrackingTask make_task() { return make_e6_task(find_controller(GetParam())); }
+  static ArmDesign convert(const ArmDesign& design, const std::string& controller) {
+    return convert_design(design, controller, 0.01, make_task().drives.calc_lag_s());
+  }
+  static bool commands_drives() {
+    return find_controller(GetParam()).interface != ControlInterface::effort;
   }
   static std::vector<TrackingResult> simulate(const std::string& engine, const TrackingSetup& setup,
                                               const std::vector<TrackingJob>& jobs) {
     return make_engine(engine)->simulate(setup, jobs);
   }
   TrackingSetup setup_{load_irb4600(), make_task()};
-  ArmDesign design_ = convert_design(kTableA1, GetParam(), 0.01);
+  ArmDesign design_ = convert(kTableA1, GetParam());
 };
 
 // Compares maximal coordinates with corrected joints and joint coordinates. Tolerance: a percent,
@@ -92,9 +94,14 @@ TEST_P(UnderController, NeighboursDoNotMatter) {
   for (std::uint64_t number = 0; number < 5; ++number) {
     targets.push_back(setup.make_targets(make_case(number, 6)));
   }
-  const ArmDesign limp = convert_design(kLimp, GetParam(), 0.01);
-  const ArmDesign others[] = {kTableA1, convert_design(kTableA1, "pi2d", 0.01), limp, kExploding,
-                              design_};
+  const ArmDesign limp = convert(kLimp, GetParam());
+  ArmDesign others[] = {kTableA1, convert(kTableA1, "pi2d"), limp, kExploding, design_};
+  if (commands_drives()) {  // all controllers of a task command the same
+    others[0] = convert(kTableA5, GetParam());
+    others[1] = convert(kTableA10, GetParam());
+    others[3] = convert(kExploding, GetParam());
+    others[3].joints[3].gains[0] = 1e8;
+  }
   std::vector<TrackingJob> jobs;
   for (std::size_t i = 0; i < 60; ++i) {
     jobs.push_back(

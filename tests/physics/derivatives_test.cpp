@@ -175,12 +175,12 @@ TEST_F(Derivatives, DoNotDependOnHowManyAreAskedForAtOnce) {
 // are moved away from it.
 TEST_F(Derivatives, AreTheLimitsOfDifferencesForEveryController) {
   for (const ControllerRow& row : controller_table()) {
-    TrackingTask task = make_e6_task();
-    task.feed_forward = row.feed_forward;
+    TrackingTask task = make_e6_task(row);
     task.control_start = ControlStart::gravity;
     const TrackingSetup setup(load_irb4600(), task);
     const TargetTable targets = setup.make_targets(make_case(7, 8));
-    ArmDesign design = convert_design(kTableA1, row.name, task.control_period_s);
+    ArmDesign design =
+        convert_design(kTableA1, row.name, task.control_period_s, task.drives.calc_lag_s());
     for (JointDrive& joint : design.joints) {
       joint.limits.min *= 0.97;  // two equal limits would be a kink of the larger one
       for (std::size_t k = 0; k < joint.gains.size(); ++k) {

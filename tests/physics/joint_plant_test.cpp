@@ -10,8 +10,7 @@
 #include "sim/dynamics/joint_effort.hpp"
 #include "sim/kinematics/kinematics.hpp"
 #include "sim/tracking/tracking_loop.hpp"
-#include "test_arms.hpp"
-#include "tracking_arms.hpp"
+#include "swinging_arms.hpp"
 
 namespace armwright::physics_test {
 namespace {
@@ -367,16 +366,6 @@ TrackingTask make_fine_task() {
   return task;
 }
 
-double calc_largest_gap_m(const TrackingResult& a, const TrackingResult& b) {
-  EXPECT_EQ(a.tips_m.size(), b.tips_m.size());
-  EXPECT_GT(a.tips_m.size(), 100U);
-  double gap_m = 0;
-  for (std::size_t k = 0; k < std::min(a.tips_m.size(), b.tips_m.size()); ++k) {
-    gap_m = std::max(gap_m, (a.tips_m[k] - b.tips_m[k]).norm());
-  }
-  return gap_m;
-}
-
 // Whole cases: articulated and MuJoCo agree to 1e-9 m with armature and viscous friction and to
 // 1e-6 m with everything; ODE's error is the same within a percent, as of the ideal arm.
 TEST(JointPlantInEngines, Agree) {
@@ -417,53 +406,6 @@ TEST(JointPlantInEngines, Agree) {
       }
     }
   }
-}
-
-// Returns targets on which every joint swings by 0.3 rad or m.
-TargetTable make_swing(const RobotModel& robot, int steps) {
-  TargetTable table;
-  table.joints = robot.joint_count();
-  table.steps = steps;
-  for (std::size_t i = 0; i < table.joints; ++i) {
-    table.start_positions.push_back(0.2 * static_cast<double>(i) - 0.5);
-  }
-  for (int step = 0; step < steps; ++step) {
-    for (std::size_t i = 0; i < table.joints; ++i) {
-      const double phase = 0.05 * (step + 1) * (1 + 0.1 * static_cast<double>(i));
-      table.joint_positions.push_back(table.start_positions[i] + 0.15 * (1 - std::cos(phase)));
-    }
-  }
-  Segment segment;
-  segment.steps = steps;
-  segment.window_start = steps - 1;
-  segment.duration_s = 0.01 * steps;
-  segment.from_m = segment.to_m = Vector3d::Zero();
-  table.segments = {segment};
-  return table;
-}
-
-// Returns the robot with a full plant whose size follows from the inertia that each joint moves, and
-// slow controllers for it.
-std::pair<RobotModel, ArmDesign> make_plant_of_size(RobotModel robot, const TargetTable& targets) {
-  const VectorXd start = Eigen::Map<const VectorXd>(targets.start_positions.data(),
-                                                    static_cast<Eigen::Index>(robot.joint_count()));
-  const MatrixXd mass = make_arm<ArticulatedArm>(robot, start).calc_mass_matrix();
-  ArmDesign design;
-  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    JointPlant& plant = robot.joints[i].plant;
-    const double m = mass(at, at);
-    plant.armature = 0.6 * m;
-    plant.viscous = 0.3 * m;
-    plant.coulomb = 0.4 * m;
-    plant.stribeck = 0.2 * m;
-    plant.offset = 0.05 * m;
-    plant.counterbalance = {-2, 2, {-m, 2 * m, m}};
-    design.joints.push_back({{100 * m, 200 * m, 20 * m}, {-1e4, 1e4}});
-  }
-  JointPlant& spring = robot.joints.front().plant;
-  spring.stiffness = 100 * 100 * spring.armature;
-  return {robot, design};
 }
 
 // Arms of 3, 6 and 7 joints, with tilted axes and a slider, run other kernels than the thesis's arm.

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "sim/engines/engine_table.hpp"
@@ -59,6 +60,25 @@ inline const ArmDesign kLimp = make_design({{450, 1500, 75, -200, 200},
 inline TrackingTask make_e6_task() {
   TrackingTask task;
   task.distance_limit_m = 1.6;
+  return task;
+}
+
+// Returns drives with inner loops of 30 Hz and a delay of 4 ms.
+inline ArmDrives make_drives(ControlInterface interface) {
+  ArmDrives drives;
+  drives.interface = interface;
+  drives.bandwidth_rad_per_s = 2 * std::numbers::pi * 30;
+  drives.delay_s = 0.004;
+  return drives;
+}
+// Returns E6's task for the controllers of a row of the table.
+inline TrackingTask make_e6_task(const ControllerRow& row) {
+  TrackingTask task = make_e6_task();
+  task.feed_forward = row.feed_forward;
+  if (row.interface != ControlInterface::effort) {
+    task.physics.substeps = 10;  // the inner loops need them
+    task.drives = make_drives(row.interface);
+  }
   return task;
 }
 

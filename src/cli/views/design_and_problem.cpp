@@ -35,6 +35,12 @@ LoadedProblem load_problem_of_design(const DesignFile& design, const std::string
     // controller.
     overrides.insert(overrides.begin(), "control.controller=" + design.design.controller);
   }
+  const ControlInterface interface = find_controller(design.design.controller).interface;
+  if (interface != ControlInterface::effort) {
+    overrides.insert(
+        overrides.begin(),
+        "control.interface=" + control_interface_names()[static_cast<std::size_t>(interface)]);
+  }
   if (!problem.empty()) {
     return load_problem(problem, overrides);
   }

@@ -15,7 +15,7 @@ namespace armwright {
 namespace {
 
 std::string get_extension(std::string_view kind) {
-  return kind == "robots" ? ".urdf" : ".toml";
+  return kind == "robots" ? ".urdf" : kind == "gains" ? ".yaml" : ".toml";
 }
 
 // Robots and their plants stand in one folder.
@@ -121,7 +121,8 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
   // Shipped robots are URDF files; load_urdf() also reads MJCF, and refuses xacro.
   const bool is_other_robot =
       kind == "robots" && (path.extension() == ".xml" || path.extension() == ".xacro");
-  if (has_folder || path.extension() == extension || is_other_robot) {
+  const bool is_yml = kind == "gains" && path.extension() == ".yml";
+  if (has_folder || path.extension() == extension || is_other_robot || is_yml) {
     for (const auto& candidate : {beside / path, path}) {
       if (is_file(candidate)) {
         return candidate;

@@ -15,8 +15,8 @@ namespace armwright {
 // Error{usage} that names the folder that was expected.
 std::filesystem::path find_config_folder();
 
-// Returns the path of a file of `kind` ("problems", "designs", "robots", "plants", "studies",
-// "perturbations", "reproductions") that a user names. A text with a slash or with the kind's
+// Returns the path of a file of `kind` ("problems", "designs", "gains", "robots", "plants",
+// "studies", "perturbations", "reproductions") that a user names. A text with a slash or with the kind's
 // extension is a path, any other text the name of a shipped file. A relative path is looked for in
 // `beside` first (the folder of the file that names it), then in the current folder, and without a
 // slash among the shipped files. Throws Error{usage} with the valid names and the nearest one.

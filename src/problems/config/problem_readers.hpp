@@ -140,6 +140,14 @@ inline constexpr Range kDirectionRange{.lower = -1e6, .upper = 1e6};
 // The limits of each angle of roll, pitch and yaw, rad.
 inline constexpr Range kAngleRange{.lower = -7, .upper = 7};
 
+// drive_reader.cpp: [control], what it says of drives
+
+extern const Setting<std::string> kControlInterface;
+extern const Setting<double> kControlBandwidth, kControlDelay, kControlResolution,
+    kControlSlideResolution;
+// Sets task.drives. The control period and the physics of the task must be set.
+void read_drives(const ConfigTable& control, TrackingTask& task);
+
 // robot_proposal.cpp: what robot.propose = true adds
 
 // Proposes what the file leaves out of orientation, home, workspace and speed

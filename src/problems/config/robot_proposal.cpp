@@ -241,6 +241,9 @@ ArmDesign propose_start(const ConfigTable& variables, const TrackingConfig& conf
   if (const auto bandwidth = variables.find(kVariablesStartBandwidth)) {
     return record(*bandwidth);
   }
+  if (config.task.drives.has_loops()) {
+    return record(kStartBandwidth_rad_per_s);  // the controllers follow from the drives
+  }
   const ReadStep step(
       fmt::format("simulating the start of robot '{}'", sanitize(config.robot.name)));
   const TrackingSetup setup(config.robot, config.task);

@@ -193,7 +193,10 @@ const SettingTable kTaskSettings{
                  &kTaskOrientation, &kTaskToolRpy, &kTaskToolAxis, &kTaskOrientationArm,
                  &kTaskHome}};
 const SettingTable kControlSettings{
-    .key = "control", .settings = {&kControlPeriod, &kControlController, &kControlStart}};
+    .key = "control",
+    .settings = {&kControlPeriod, &kControlController, &kControlStart, &kControlInterface,
+                 &kControlBandwidth, &kControlDelay, &kControlResolution,
+                 &kControlSlideResolution}};
 const SettingTable kWorkspaceSettings{
     .key = "workspace",
     .settings = {&kWorkspaceCentre, &kWorkspaceRadius, &kWorkspaceNormal, &kWorkspaceShortestMove,

@@ -382,6 +382,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   check_floor(task, config);
   config.workspace = read_workspace(table.get_table_or_empty(kWorkspaceSettings));
   name_robot_file(urdf, [&] { read_path_and_proposal(table, config, loaded); });
+  read_drives(control, config.task);  // they need the final control period
   check_length(task, control, config);
   config.objective = read_objective(table.get_table_or_empty(kObjectiveSettings));
   config.cutoff_error_m = table.get_table_or_empty(kTrainingSettings).get(kTrainingCutoff);

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "problems/config/design_file.hpp"
+#include "problems/config/gains_file.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "problems/tracking/tracking_config.hpp"
 #include "sim/tracking/design.hpp"
@@ -17,7 +18,8 @@ namespace armwright {
 
 const Setting<std::string> kVariablesStart{
     "start", kNoDefault,
-    "design to start from: a file beside this one, the name of a shipped design, or proposed"};
+    "design to start from: a file beside this one, the name of a shipped design, proposed, or "
+    "gains of ros2_control (FILE.yaml)"};
 
 const Setting<double> kVariablesStartBandwidth{
     "start_bandwidth_rad_per_s",
@@ -78,15 +80,33 @@ void set_start_speed(const ConfigTable& variables, TrackingConfig& config) {
   }
 }
 
-// Converts the start to the controller that the problem names, and asks for the feed-forward that
-// the controller needs.
-void apply_controller(const ConfigTable& control, TrackingConfig& config) {
+// Returns the controller that the problem names. Without a name it is that of the start or, if that
+// does not command what the drives take, the first one that does.
+std::string choose_controller(const ConfigTable& control, const TrackingConfig& config) {
+  const ControlInterface interface = config.task.drives.interface;
   if (const auto name = control.find(kControlController)) {
-    try {
-      config.start = convert_design(config.start, *name, config.task.control_period_s);
-    } catch (const Error& error) {
-      control.refuse(kControlController, error.what());
-    }
+    return *name;
+  }
+  const std::string& own = config.start.controller;
+  if (interface == ControlInterface::effort || find_controller(own).interface == interface) {
+    return own;
+  }
+  return std::ranges::find(controller_table(), interface, &ControllerRow::interface)->name;
+}
+
+// Converts the start to the controller of the problem, and asks for the feed-forward that the
+// controller needs.
+void apply_controller(const ConfigTable& control, TrackingConfig& config) {
+  const ArmDrives& drives = config.task.drives;
+  const std::string name = choose_controller(control, config);
+  const AnySetting& source =
+      control.has(kControlController) ? kControlController : kControlInterface;
+  try {
+    check_interface(find_controller(name), drives);
+    config.start =
+        convert_design(config.start, name, config.task.control_period_s, drives.calc_lag_s());
+  } catch (const Error& error) {
+    control.refuse(source, error.what());
   }
   config.task.feed_forward = find_controller(config.start.controller).feed_forward;
 }
@@ -190,6 +210,10 @@ void read_variables(const ConfigTable& variables, const ConfigTable& control,
                     LoadedProblem& loaded) {
   if (variables.get(kVariablesStart) == kProposedStart) {
     name_robot_file(urdf, [&] { config.start = propose_start(variables, config); });
+  } else if (is_gains_file(variables.get(kVariablesStart))) {
+    const auto start = resolve_named(variables, kVariablesStart, "gains");
+    config.start = load_gains(start, config.robot, config.task.drives);
+    add_input(loaded, start);
   } else {
     const auto start = resolve_named(variables, kVariablesStart, "designs");
     config.start = load_design(start.string()).design;

@@ -141,6 +141,10 @@ void TrackingProblem::describe_jacobian() {
     advice =
         "friction, quantisation, delay and torque ripple in training have no derivatives; leave "
         "these out of [perturbation] or set apply_to to judging";
+  } else if (config_.task.drives.has_resolution()) {
+    advice =
+        "positions of finite resolution have no derivatives; set control.resolution_rad and "
+        "control.resolution_m to 0";
   } else if (!config_.engines.training->has_derivatives()) {
     advice =
         fmt::format("engine '{}' computes no derivatives; choose --engine articulated, which does",
@@ -159,6 +163,7 @@ void TrackingProblem::check_design(const ArmDesign& design) const {
                     config_.robot.joint_count()));
   }
   const ControllerRow& controller = find_controller(design.controller);
+  check_interface(controller, config_.task.drives);
   if (controller.feed_forward != FeedForward::none &&
       controller.feed_forward != config_.task.feed_forward) {
     throw Error(ErrorKind::usage,

@@ -171,6 +171,9 @@ void write_ros2_control(const FinishedArm& arm, const fs::path& folder) {
   const TrackingConfig& config = arm.config();
   const std::vector<std::string> origin = describe_origin(arm);
   for (const Ros2Distribution& distribution : ros2_distributions()) {
+    if (!has_interface(distribution, arm.design)) {
+      continue;  // the documentation says which
+    }
     write_output_file(folder / fmt::format("controllers-{}.yaml", distribution.name),
                       make_ros2_control(distribution, config.robot, arm.design,
                                         config.task.control_period_s, origin));

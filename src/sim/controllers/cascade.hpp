@@ -23,6 +23,7 @@ struct Cascade {
                                     {"kv", "kv_n_m_s_per_rad", "N m s/rad"},
                                     {"ki", "ki_n_m_per_rad", "N m/rad"},
                                     {"share", "share", "1", 1}};
+  static constexpr ControlInterface kInterface = ControlInterface::effort;
   static constexpr int kStates = 3;
   static constexpr FeedForward kFeedForward = FeedForward::none;
 

@@ -188,8 +188,9 @@ std::unique_ptr<Controller> make_controller(std::span<const double> gains, Effor
 template <class... Laws>
 std::vector<ControllerRow> make_table(controllers::LawList<Laws...>) {
   std::vector<ControllerRow> table = {{Laws::kName, Laws::kSummary, Laws::kFormula, Laws::kGains,
-                                       Laws::kFeedForward, 0, Laws::kStates, Laws::convert,
-                                       calc_holding_states<Laws>, make_controller<Laws>}...};
+                                       Laws::kInterface, Laws::kFeedForward, 0, Laws::kStates,
+                                       Laws::convert, calc_holding_states<Laws>,
+                                       make_controller<Laws>}...};
   for (std::size_t i = 0; i < table.size(); ++i) {
     table[i].law = static_cast<int>(i);
   }

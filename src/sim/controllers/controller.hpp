@@ -1,6 +1,7 @@
 // Joint controllers behind one interface, and the explicit table of them, which is made from the
 // laws of controllers/law_table.hpp. Once per control period, a controller maps setpoint and
-// measurement to an effort that is clamped to the joint's limits. It reads no clock and no file.
+// measurement to an effort that is clamped to the joint's limits. A controller that commands a drive
+// does the same with a speed or a position (ControllerRow::interface). It reads no clock and no file.
 // The only thing that it knows about its joint is the kind.
 //
 // The keys of gains name the units of a revolute joint: N m and rad. For a prismatic joint read N
@@ -49,6 +50,7 @@ struct ControllerRow {
   std::string summary;
   std::string formula;
   std::span<const controllers::Gain> gains;
+  ControlInterface interface = ControlInterface::effort;
   FeedForward feed_forward = FeedForward::none;
   int law = 0;     // its place in the table, by which the SIMD lanes find it
   int states = 0;  // count of numbers that it keeps from step to step

@@ -3,15 +3,17 @@
 // numbers that carry derivatives. A law has these members:
 //   kName, kSummary, kFormula    texts
 //   kGains                       its design variables, an array of Gain
+//   kInterface                   what it commands
 //   kStates                      count of numbers that it keeps from step to step, all 0 at first
 //   kFeedForward                 which efforts it needs in `feed_forward`
 //   convert(PidStart, own)       computes start values of its gains from those of a PID
-//   calc(in, gain, state)        returns the wanted effort and updates its state
-// A law with an integral also has this member:
+//   calc(in, gain, state)        returns the wanted command and updates its state
+// A law of efforts with an integral also has this member:
 //   hold(effort, gain, state)    sets the state before the first step, of which all is 0. From then on
 //                                calc() returns `effort` while setpoint and measurement stay equal and
 //                                `feed_forward` is `effort`. An integral whose gain is 0 stays 0.
-// All efforts are clamped alike: u = min(max, max(min, wanted)). Anti-windup: `integrating` is 0
+// The command is an effort, or what a drive takes (kInterface). All commands are clamped alike:
+// u = min(max, max(min, wanted)). Anti-windup: `integrating` is 0
 // after a clamped step, otherwise 1, and every integral is summed as
 //   integral + integrating x h x integrand.
 // Lanes cannot branch on numbers: use select(), min() and max() instead.

@@ -6,6 +6,7 @@
 #include "sim/controllers/neural.hpp"
 #include "sim/controllers/pi2d.hpp"
 #include "sim/controllers/pid.hpp"
+#include "sim/controllers/pid_drive.hpp"
 #include "sim/controllers/pid_feed_forward.hpp"
 #include "sim/controllers/pid_filtered.hpp"
 
@@ -15,7 +16,8 @@ template <class... Laws>
 struct LawList {};
 
 using AllLaws = LawList<Pid,  // must be the first: the kernels have it inlined
-                        PidFiltered, Pi2d, PidGravity, PidComputedTorque, Cascade, Neural>;
+                        PidFiltered, Pi2d, PidGravity, PidComputedTorque, Cascade, Neural,
+                        PidVelocity, PidPosition>;
 
 // Sets the state of a joint's controller, as hold_effort(). Gains and states are those of the joint.
 template <class V>

@@ -10,6 +10,10 @@ namespace armwright {
 // nominal arm of the problem (sim/tracking/feed_forward.cpp).
 enum class FeedForward : std::uint8_t { none, gravity, inverse_dynamics };
 
+// What a controller commands: the effort of the motor, or the speed or position of a drive that has
+// an inner loop (sim/tracking/arm_drives.hpp).
+enum class ControlInterface : std::uint8_t { effort, velocity, position };
+
 namespace controllers {
 
 struct Gain {
@@ -22,11 +26,13 @@ struct Gain {
   bool any_sign = false;
 };
 
-// A joint's PID, from which a law computes the start values of its own gains.
+// A joint's PID, from which a law computes the start values of its own gains. Laws that command
+// drives use the times alone.
 struct PidStart {
   double p, i, d;
   double effort_limit;  // the larger of both limits, max(-min, max)
   double period_s;
+  double lag_s = 0;  // how long a drive takes to follow a command (ArmDrives::calc_lag_s())
 };
 
 }  // namespace controllers

@@ -70,6 +70,7 @@ struct Neural {
                                     {"v2", "v2", "1", kOutputs, true},
                                     {"v3", "v3", "1", kOutputs, true},
                                     {"v_bias", "v_bias", "1", 1, true}};
+  static constexpr ControlInterface kInterface = ControlInterface::effort;
   static constexpr int kStates = 2;
   static constexpr FeedForward kFeedForward = FeedForward::none;
 

@@ -19,6 +19,7 @@ struct Pi2d {
                                     {"i", "i_n_m_per_rad_s", "N m/(rad s)"},
                                     {"i2", "i2_n_m_per_rad_s2", "N m/(rad s^2)"},
                                     {"d", "d_n_m_s_per_rad", "N m s/rad"}};
+  static constexpr ControlInterface kInterface = ControlInterface::effort;
   static constexpr int kStates = 3;
   static constexpr FeedForward kFeedForward = FeedForward::none;
 

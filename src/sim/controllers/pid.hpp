@@ -15,6 +15,7 @@ struct Pid {
   static constexpr Gain kGains[] = {{"p", "p_n_m_per_rad", "N m/rad"},
                                     {"i", "i_n_m_per_rad_s", "N m/(rad s)"},
                                     {"d", "d_n_m_s_per_rad", "N m s/rad"}};
+  static constexpr ControlInterface kInterface = ControlInterface::effort;
   static constexpr int kStates = 2;
   static constexpr FeedForward kFeedForward = FeedForward::none;
 

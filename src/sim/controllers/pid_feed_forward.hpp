@@ -19,6 +19,7 @@ struct PidFeedForward {
                                     {"i", "i_n_m_per_rad_s", "N m/(rad s)"},
                                     {"d", "d_n_m_s_per_rad", "N m s/rad"},
                                     {"share", "share", "1", 1}};
+  static constexpr ControlInterface kInterface = ControlInterface::effort;
   static constexpr int kStates = 2;
 
   static void convert(const PidStart& pid, double* own) {

@@ -26,6 +26,7 @@ struct PidFiltered {
                                     {"filter", "filter_s", "s"},
                                     {"b", "b", "1", 1},
                                     {"c", "c", "1", 1}};
+  static constexpr ControlInterface kInterface = ControlInterface::effort;
   static constexpr int kStates = 5;
   static constexpr FeedForward kFeedForward = FeedForward::none;
 

@@ -31,7 +31,8 @@ EffortTotals calc_effort_totals(const ArmDesign& design, const RobotModel& robot
   return totals;
 }
 
-ArmDesign convert_design(const ArmDesign& design, std::string_view controller, double period_s) {
+ArmDesign convert_design(const ArmDesign& design, std::string_view controller, double period_s,
+                         double lag_s) {
   if (design.controller == controller) {
     return design;
   }
@@ -48,9 +49,9 @@ ArmDesign convert_design(const ArmDesign& design, std::string_view controller, d
     const JointDrive& pid = design.joints[joint];
     JointDrive& drive = converted.joints[joint];
     drive.gains.assign(row.gains.size(), 0.0);
-    row.convert(
-        {pid.gains.at(0), pid.gains.at(1), pid.gains.at(2), calc_largest_effort(pid), period_s},
-        drive.gains.data());
+    row.convert({pid.gains.at(0), pid.gains.at(1), pid.gains.at(2), calc_largest_effort(pid),
+                 period_s, lag_s},
+                drive.gains.data());
     for (std::size_t gain = 0; gain < drive.gains.size(); ++gain) {
       if (!std::isfinite(drive.gains[gain])) {
         throw Error(

@@ -40,7 +40,9 @@ EffortTotals calc_effort_totals(const ArmDesign& design, const RobotModel& robot
 
 // Returns the design itself if it is for the given controller. From a PID design it makes one for
 // that controller: ControllerRow::convert computes the gains, and the rest stays. Throws
-// Error{usage} for a design of any other controller, and if a gain is not finite.
-ArmDesign convert_design(const ArmDesign& design, std::string_view controller, double period_s);
+// Error{usage} for a design of any other controller, and if a gain is not finite. `lag_s` is that of
+// the arm's drives (ArmDrives::calc_lag_s()).
+ArmDesign convert_design(const ArmDesign& design, std::string_view controller, double period_s,
+                         double lag_s = 0);
 
 }  // namespace armwright

@@ -29,8 +29,9 @@ void fill_points(const TrackingJob& job, TrackingResult& result) {
 
 }  // namespace
 
-void check_feed_forward(const TrackingJob& job) {
+void check_controller(const TrackingTask& task, const TrackingJob& job) {
   const ControllerRow& row = find_controller(job.design->controller);
+  check_interface(row, task.drives);
   const TargetTable& targets = *job.targets;
   if (row.feed_forward != FeedForward::none && targets.unreachable.empty() &&
       targets.feed_forward_effort.size() != targets.joint_positions.size()) {

@@ -24,9 +24,9 @@ inline constexpr double kFastestLink_rad_per_s = 1e6;
 // What the reason of a divergence says of a joint whose state is not finite.
 inline constexpr std::string_view kNotFinite = "its position or speed is not a finite number";
 
-// Throws Error{usage} if the job's controller needs feed-forward efforts and the target table of a
-// case that can be simulated has none.
-void check_feed_forward(const TrackingJob& job);
+// Throws Error{usage} if the job's controller commands something else than the task's drives take,
+// or if it needs feed-forward efforts and the target table of a case that can be simulated has none.
+void check_controller(const TrackingTask& task, const TrackingJob& job);
 
 // Returns whether the job's targets are out of reach. If so, the result gets the status
 // `unreachable`, and the engine must not simulate the job.

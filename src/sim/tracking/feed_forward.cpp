@@ -15,18 +15,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "sim/dynamics/chain_dynamics.hpp"
-#include "sim/dynamics/chain_model.hpp"
+#include "sim/dynamics/arm_equations.hpp"
 #include "sim/dynamics/joint_effort.hpp"
 #include "sim/kinematics/kinematics.hpp"
 #include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
 namespace {
-
-struct FeedForwardLevel;  // tags the code that this file instantiates
-using FeedForwardNumber = lanes::Single<double, FeedForwardLevel>;
-using FeedForwardChain = articulated::ChainShape<0, articulated::kAnyShape, true>;
 
 // Returns the effort that a joint's plant takes from the motor.
 double calc_plant_effort(const Joint& joint, double q, double rate, double acceleration) {
@@ -36,93 +31,60 @@ double calc_plant_effort(const Joint& joint, double q, double rate, double accel
          articulated::calc_counterbalance(joint, q);
 }
 
-// Inverse dynamics of an arm, with all that its joints' plants take from the motors.
-class EffortModel {
- public:
-  EffortModel(const RobotModel& robot, const articulated::ChainModel& chain)
-      : robot_(robot),
-        chain_(chain),
-        has_plant_(robot.has_plant()),
-        model_(chain.numbers().begin(), chain.numbers().end()),
-        scratch_(static_cast<std::size_t>(articulated::calc_dynamics_packs(chain.joints())),
-                 FeedForwardNumber(0)),
-        q_(robot.joint_count()) {}
-
-  JointKind kind(std::size_t joint) const {
-    return (chain_.flags()[joint] & articulated::kPrismatic) == 0 ? JointKind::revolute
-                                                                  : JointKind::prismatic;
-  }
-
-  // Writes the efforts of a period, one per joint: positions and rates at its start, the
-  // accelerations during it, and the rates at its end.
-  void calc(const double* positions, const std::vector<FeedForwardNumber>& rate,
-            const std::vector<FeedForwardNumber>& acceleration,
-            const std::vector<FeedForwardNumber>& next_rate, double* efforts) {
-    const std::size_t n = q_.size();
-    FeedForwardNumber* memory = scratch_.data();
-    articulated::ChainDynamics<FeedForwardNumber, FeedForwardChain> dynamics(
-        FeedForwardChain(chain_.joints(), chain_.flags().data(), chain_.tilted_gravity()),
-        model_.data(), memory);
-    for (std::size_t i = 0; i < n; ++i) {
-      q_[i] = positions[i];
-    }
-    dynamics.set_posture(q_.data(), true);
-    dynamics.calc_equations(q_.data(), rate.data());
-    for (std::size_t i = 0; i < n; ++i) {
-      double effort = dynamics.bias(static_cast<int>(i)).v;
-      for (std::size_t j = 0; j < n; ++j) {
-        effort +=
-            dynamics.mass(static_cast<int>(std::max(i, j)), static_cast<int>(std::min(i, j))).v *
-            acceleration[j].v;
-      }
-      efforts[i] = effort;
-      if (has_plant_) {
-        efforts[i] +=
-            calc_plant_effort(robot_.joints[i], positions[i], next_rate[i].v, acceleration[i].v);
-      }
-    }
-  }
-
- private:
-  const RobotModel& robot_;
-  const articulated::ChainModel& chain_;
-  bool has_plant_;
-  std::vector<FeedForwardNumber> model_, scratch_, q_;
-};
-
 }  // namespace
 
+std::vector<double> TrackingSetup::calc_holding_efforts(std::span<const double> q) const {
+  articulated::ArmEquations equations(*chain_);
+  equations.set(q, std::vector<double>(q.size(), 0));
+  std::vector<double> efforts;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    efforts.push_back(equations.bias(i) + calc_plant_effort(robot_.joints[i], q[i], 0, 0));
+  }
+  return efforts;
+}
+
 void TrackingSetup::fill_efforts(TargetTable& table) const {
+  if (task_.control_start == ControlStart::gravity) {
+    table.holding_effort = calc_holding_efforts(table.start_positions);
+  }
   const FeedForward kind = task_.feed_forward;
-  const bool holds = task_.control_start == ControlStart::gravity;
-  if (kind == FeedForward::none && !holds) {
-    return;
-  }
-  const double period_s = task_.control_period_s;
-  const std::size_t n = table.joints;
-  EffortModel model(robot_, *chain_);
-  std::vector<FeedForwardNumber> rate(n, FeedForwardNumber(0));  // at the start of the period
-  std::vector<FeedForwardNumber> acceleration = rate;
-  const double* before = table.start_positions.data();
-  if (holds) {
-    table.holding_effort.resize(n);
-    model.calc(before, rate, acceleration, rate, table.holding_effort.data());
-  }
   if (kind == FeedForward::none) {
     return;
   }
+  const articulated::ChainModel& chain = *chain_;
+  const double period_s = task_.control_period_s;
+  const bool has_plant = robot_.has_plant();
+  const std::size_t n = table.joints;
+  const auto joint_kind = [&](std::size_t i) {
+    return (chain.flags()[i] & articulated::kPrismatic) == 0 ? JointKind::revolute
+                                                             : JointKind::prismatic;
+  };
+  articulated::ArmEquations equations(chain);
+  // The state at the start of the period, and the acceleration during it.
+  std::vector<double> rate(n, 0), acceleration(n, 0);
+  std::span<const double> before = table.start_positions;
   table.feed_forward_effort.resize(table.joint_positions.size());
   for (int step = 0; step < table.steps; ++step) {
-    const double* const target = table.positions(step).data();
-    std::vector<FeedForwardNumber> next = rate;
+    const std::span<const double> target = table.positions(step);
+    std::vector<double> next = rate;
     if (kind == FeedForward::inverse_dynamics) {
       for (std::size_t i = 0; i < n; ++i) {
-        next[i] = calc_displacement(model.kind(i), before[i], target[i]) / period_s;
-        acceleration[i] = (next[i].v - rate[i].v) / period_s;
+        next[i] = calc_displacement(joint_kind(i), before[i], target[i]) / period_s;
+        acceleration[i] = (next[i] - rate[i]) / period_s;
       }
     }
-    model.calc(before, rate, acceleration, next,
-               table.feed_forward_effort.data() + static_cast<std::size_t>(step) * n);
+    equations.set(before, rate);
+    double* const efforts = table.feed_forward_effort.data() + static_cast<std::size_t>(step) * n;
+    for (std::size_t i = 0; i < n; ++i) {
+      double effort = equations.bias(i);
+      for (std::size_t j = 0; j < n; ++j) {
+        effort += equations.mass(i, j) * acceleration[j];
+      }
+      efforts[i] = effort;
+      if (has_plant) {
+        efforts[i] += calc_plant_effort(robot_.joints[i], before[i], next[i], acceleration[i]);
+      }
+    }
     rate = next;
     before = target;
   }

@@ -58,9 +58,11 @@ struct TrackingJob {
   const TrackingSetup& choose_setup(const TrackingSetup& of_batch) const {
     return setup != nullptr ? *setup : of_batch;
   }
-  // Returns whether the plant is perturbed, or a joint of the arm is not ideal.
+  // Returns whether the plant is perturbed, or a joint of the arm is not ideal or has a drive with
+  // an inner loop.
   bool has_plant(const TrackingSetup& of_batch) const {
-    return variation != nullptr || choose_setup(of_batch).robot().has_plant();
+    return variation != nullptr || choose_setup(of_batch).robot().has_plant() ||
+           of_batch.task().drives.has_loops();
   }
 };
 
@@ -81,7 +83,8 @@ const char* to_string(SimulationStatus status);
 // The state at the end of one control period. Positions are in the world frame.
 struct TrajectorySample {
   double time_s;  // since the start of the case
-  // One number per joint: joint positions and setpoints (rad or m), and efforts (N m or N).
+  // One number per joint: joint positions and setpoints (rad or m), and the motors' efforts (N m or
+  // N) in the last substep.
   std::vector<double> q, target_q, effort;
   Eigen::Vector3d tip_m, target_m;
 };
@@ -96,7 +99,8 @@ struct TrackingResult {
   double mean_error_m = 0;  // see SimulationStatus
   // One number per joint over the simulated control periods: the largest magnitude and the root
   // mean square of the effort (N m or N), and the share (0 to 1) of periods with a clamped effort.
-  // Empty if the status is unreachable.
+  // Efforts are those of the motors: the controllers' or, where these command drives, the drives',
+  // which are taken in every substep. Empty if the status is unreachable.
   std::vector<double> peak_effort, rms_effort, saturated_share;
   // Positive mechanical work of all joints: the sum of max(0, effort x displacement).
   double energy_j = 0;

@@ -11,12 +11,13 @@
 #include "sim/kinematics/targets.hpp"
 #include "sim/kinematics/tool_task.hpp"
 #include "sim/robot/robot_model.hpp"
+#include "sim/tracking/arm_drives.hpp"
 
 namespace armwright {
 
 struct PhysicsSettings {
   double gravity_m_per_s2 = 9.80665;
-  // Plant steps per control period; the effort is held. The published gains need exactly 1.
+  // Plant steps per control period; the command is held. The published gains need exactly 1.
   int substeps = 1;
   // ODE only: share of a joint's position error that one step corrects (thesis: damping 1/25 s).
   double erp = 0.25;
@@ -51,6 +52,7 @@ struct TrackingTask {
   double trapezoid_acceleration_m_per_s2 = 15;
   double rest_s = 0.5;
   double control_period_s = 0.01;  // h
+  ArmDrives drives;
   bool count_first_point = false;
   bool ik_bug = false;
   double load_kg = 0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "sim/tracking/engine_support.hpp"
@@ -21,23 +22,42 @@ class ArmPlant {
   // object. `variation` may be null.
   ArmPlant(const RobotModel& robot, const PlantVariation* variation, std::span<const double> q,
            double substep_s);
+  ~ArmPlant();
+
+  // Lets drives turn what the controllers command into efforts, if the task has drives with inner
+  // loops. Call it before the first step.
+  void add_drives(const TrackingSetup& setup, const TrackingJob& job);
 
   // Returns the joint positions as the controllers measure them now.
   std::span<const double> measure();
-  // Computes what acts on the links during a substep, given the controllers' efforts and the
+  // Computes what acts on the links during a substep, given what the controllers command and the
   // joints' state at its start. Moves the motors of elastic joints to its end.
-  void act(std::span<const double> effort, std::span<const double> q, std::span<const double> qd);
+  void act(std::span<const double> command, std::span<const double> q, std::span<const double> qd);
   // Return the efforts (N m or N) on the links, and the inertia (kg m^2 or kg) that joins each
   // joint. It is empty if the robot's joints are ideal.
   std::span<const double> effort() const { return acting_effort_; }
   std::span<const double> inertia() const { return inertia_; }
   // Stores the joint positions that a substep ended with.
   void remember(std::span<const double> q);
+  // Ends the drives' substep, given the joints' rates at its end.
+  void end_substep(std::span<const double> qd);
   // Returns the position that the controller's effort pushes: that of the link, which is q, or of
   // the motor of an elastic joint.
   double get_pushed(std::size_t joint, double q) const;
 
+  // What a drive did in a control period: its last effort, the largest magnitude, the mean square
+  // (N m or N), the share of clamped substeps, and the positive work (J).
+  struct DriveMeasures {
+    double effort, peak, square, clamped, work;
+  };
+  // Returns the measures of the period that ends, and begins those of the next one. Returns nothing
+  // if there are no drives with inner loops.
+  std::optional<DriveMeasures> take_measures(std::size_t joint);
+
  private:
+  struct Drives;
+  double drive(std::size_t joint, double command, double q, double rate);
+  double get_measured(std::size_t joint, double q) const;
   double perturb(std::size_t joint, double effort, double q, double rate) const;
   double pass_spring(std::size_t joint, double effort, double q, double rate);
 
@@ -48,6 +68,7 @@ class ArmPlant {
   std::size_t newest_ = 0;
   std::vector<double> measured_, acting_effort_, inertia_;
   std::vector<double> motor_, motor_rate_;  // used for elastic joints
+  std::unique_ptr<Drives> drives_;          // null: the controllers command efforts
 };
 
 // One simulation of one job.
@@ -67,6 +88,8 @@ class TrackingLoop {
   // Steps a plant that is not ideal by one substep.
   template <class Arm>
   void step_plant(Arm& arm);
+  // Adds the measures of a joint's drive and sets the joint's effort. Returns whether it has one.
+  bool add_drive_measures(std::size_t joint);
   // Returns the squared error (m^2) at the end of a segment's move: that of the tip, or the mean
   // over the tool points.
   template <class Arm>
@@ -80,7 +103,8 @@ class TrackingLoop {
   double substep_s_;
   std::vector<std::unique_ptr<Controller>> controllers_;
   bool has_feed_forward_ = false;
-  std::vector<double> q_, effort_;
+  std::vector<double> q_;
+  std::vector<double> effort_;         // during a control period: what the controllers command
   std::vector<double> pushed_before_;  // at the start of the period (ArmPlant::get_pushed())
   std::optional<ArmPlant> plant_;      // empty: the ideal plant
   std::vector<double> plant_q_, plant_rate_;
@@ -105,6 +129,9 @@ void TrackingLoop::step(Arm& arm, int step) {
   arm.read_positions(q_);
   ++result_.steps;
   for (std::size_t i = 0; i < q_.size(); ++i) {
+    if (plant_ && add_drive_measures(i)) {
+      continue;
+    }
     const double magnitude = std::abs(effort_[i]);
     result_.peak_effort[i] = std::max(result_.peak_effort[i], magnitude);
     result_.rms_effort[i] += magnitude * magnitude;
@@ -124,6 +151,10 @@ void TrackingLoop::step_plant(Arm& arm) {
   arm.step(plant_->effort(), substep_s_, plant_->inertia());
   arm.read_positions(plant_q_);
   plant_->remember(plant_q_);
+  if (setup_.task().drives.has_loops()) {
+    arm.read_rates(plant_rate_);
+    plant_->end_substep(plant_rate_);
+  }
 }
 
 template <class Arm>
@@ -170,6 +201,7 @@ TrackingResult TrackingLoop::run(Arm& arm) {
     pushed_before_ = q_;
     if (job_.has_plant(setup_)) {
       plant_.emplace(setup_.robot(), job_.variation, q_, substep_s_);
+      plant_->add_drives(setup_, job_);
       plant_q_ = q_;
       plant_rate_.resize(q_.size());
     }

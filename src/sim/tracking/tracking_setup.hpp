@@ -36,6 +36,9 @@ class TrackingSetup {
   // Returns the targets of several cases, with the same bits. Numeric kinematics are several times
   // as fast for postures::kLanes cases as for one.
   std::vector<TargetTable> make_targets(std::span<const TestCase> test_cases) const;
+  // Returns the efforts (N m or N) that hold the robot at rest at joint positions q, without
+  // friction.
+  std::vector<double> calc_holding_efforts(std::span<const double> q) const;
   // Returns the target's position (m) at the end of a step, for error series and trajectories.
   Eigen::Vector3d calc_target_position(const Segment& segment, int step_in_segment) const;
   // Returns numeric kinematics of the robot, also if the task uses the closed form.

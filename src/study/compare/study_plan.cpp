@@ -57,8 +57,9 @@ std::vector<double> convert_start(const StudyPlan& plan, const Cell& cell,
   std::vector<double> own_start;
   try {
     const TrackingConfig& config = own.config();
-    own_start = own.make_vector(
-        convert_design(design, config.start.controller, config.task.control_period_s));
+    own_start = own.make_vector(convert_design(design, config.start.controller,
+                                               config.task.control_period_s,
+                                               config.task.drives.calc_lag_s()));
   } catch (const Error& error) {
     throw Error(error.kind(),
                 fmt::format("optimizer {} on {}: {}", plan.optimizers[cell.optimizer].label,

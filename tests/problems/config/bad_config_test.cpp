@@ -109,7 +109,7 @@ const std::vector<Mistake> kControl = {
          join(controller_names(), ", ")},
     {"[control]\nperiod = 0.01",
      "3: unknown key control.period; did you mean 'control.period_s'? Valid here: period_s, "
-     "controller"},
+     "interface, bandwidth_hz, delay_s, resolution_rad, resolution_m, controller"},
 };
 INSTANTIATE_TEST_SUITE_P(Control, BadSection, testing::ValuesIn(kControl));
 

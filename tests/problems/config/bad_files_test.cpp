@@ -233,7 +233,8 @@ TEST(BadDesign, EveryMistakeInItsFileHasItsPlace) {
             "d.toml:6: joint[0].effort_max_n_m is -0.001" + must + ">= 0");
   EXPECT_EQ(folder.refusal_of_design("controller = 'pdi'\n" + make_joint()),
             "d.toml:1: unknown controller 'pdi'; did you mean 'pid'? Valid: pid, "
-            "pid_filtered, pi2d, pid_gravity, pid_computed_torque, cascade, neural");
+            "pid_filtered, pi2d, pid_gravity, pid_computed_torque, cascade, neural, pid_velocity, "
+            "pid_position");
   EXPECT_EQ(folder.refusal_of_design(make_joint() + "effort_n_m = 5\n"),
             "d.toml:7: unknown key joint[0].effort_n_m; did you mean 'joint[0].effort_min_n_m'? "
             "Valid here: name, p_n_m_per_rad, i_n_m_per_rad_s, d_n_m_s_per_rad, effort_min_n_m, "

@@ -21,6 +21,24 @@ LoadedProblem load_with_gains(const std::vector<std::string>& overrides) {
   return load_problem("q2-e6", all);
 }
 
+// Returns the settings under which a problem has the controller.
+std::vector<std::string> list_settings_of(const std::string& controller) {
+  std::vector<std::string> settings = {"control.controller=" + controller};
+  const ControlInterface interface = find_controller(controller).interface;
+  if (interface != ControlInterface::effort) {
+    settings.push_back("control.interface=" +
+                       control_interface_names()[static_cast<std::size_t>(interface)]);
+    settings.push_back("physics.substeps=20");  // the drives' inner loops need them
+  }
+  return settings;
+}
+
+LoadedProblem load_under(const std::string& controller, std::vector<std::string> others = {}) {
+  const std::vector<std::string> settings = list_settings_of(controller);
+  others.insert(others.end(), settings.begin(), settings.end());
+  return load_with_gains(others);
+}
+
 const DecisionVariable& get_variable(const LoadedProblem& loaded, const std::string& name) {
   for (const DecisionVariable& variable : loaded.problem->description().variables) {
     if (variable.name == name) {
@@ -54,7 +72,7 @@ class EveryControl : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryControl, TakesTheStartOver) {
   const LoadedProblem plain = load_with_gains({});
-  const LoadedProblem loaded = load_with_gains({"control.controller=" + GetParam()});
+  const LoadedProblem loaded = load_under(GetParam());
   const ControllerRow& row = find_controller(GetParam());
   const TrackingConfig& config = loaded.tracking()->config();
   EXPECT_EQ(config.start.controller, row.name);
@@ -82,9 +100,8 @@ TEST_P(EveryControl, TakesTheStartOver) {
 
 // A short simulated evaluation, through the problem: a number, and near that of the PID's start.
 TEST_P(EveryControl, CanBeEvaluated) {
-  const std::vector<std::string> overrides = {"control.controller=" + GetParam(),
-                                              "physics.engine=articulated", "workspace.points=8"};
-  const LoadedProblem loaded = load_with_gains(overrides);
+  const LoadedProblem loaded =
+      load_under(GetParam(), {"physics.engine=articulated", "workspace.points=8"});
   std::vector<double> start;
   for (const DecisionVariable& variable : loaded.problem->description().variables) {
     start.push_back(variable.start);
@@ -102,7 +119,7 @@ TEST_P(EveryControl, DesignsSurviveTheirFile) {
   file.name = "made";
   file.title = "a start";
   file.source = "converted";
-  file.design = load_with_gains({"control.controller=" + GetParam()}).tracking()->config().start;
+  file.design = load_under(GetParam()).tracking()->config().start;
   file.design.joints[1].gains.back() *= 1.0 / 3;
   for (std::size_t k = 0; k < find_controller(GetParam()).gains.size(); ++k) {
     if (find_controller(GetParam()).gains[k].any_sign) {
@@ -120,14 +137,15 @@ TEST_P(EveryControl, DesignsSurviveTheirFile) {
     EXPECT_EQ(read.design.joints[joint].gains, file.design.joints[joint].gains);
   }
   // As a start it is used as it is, by its own controller or without naming it.
-  const LoadedProblem again =
-      load_with_gains({"control.controller=" + GetParam(), "variables.start=" + path});
+  const LoadedProblem again = load_under(GetParam(), {"variables.start=" + path});
   EXPECT_EQ(again.tracking()->config().start.joints[2].gains, file.design.joints[2].gains);
-  const LoadedProblem unnamed = load_with_gains({"variables.start=" + path});
+  std::vector<std::string> settings = list_settings_of(GetParam());
+  settings.front() = "variables.start=" + path;
+  const LoadedProblem unnamed = load_with_gains(settings);
   EXPECT_EQ(unnamed.tracking()->config().start.controller, GetParam());
   EXPECT_EQ(unnamed.tracking()->config().task.feed_forward,
             find_controller(GetParam()).feed_forward);
-  if (GetParam() != "pid") {
+  if (GetParam() != "pid" && find_controller(GetParam()).interface == ControlInterface::effort) {
     EXPECT_THAT(usage_error_of([&] {
                   load_with_gains(
                       {"control.controller=" + std::string(GetParam() == "pi2d" ? "pid" : "pi2d"),

@@ -106,6 +106,10 @@ Specimen make_specimen(const std::string& path) {
        {"path.kind=circle", "path.centre_m=[1.4,0,0.9]", "path.normal=[1,0,0]",
         "path.radius_m=0.1"}},
       {"path.file", {"path.kind=file"}},
+      {"control.bandwidth_hz", {"control.interface=velocity"}},
+      {"control.delay_s", {"control.interface=velocity"}},
+      {"control.resolution_rad", {"control.interface=velocity"}},
+      {"control.resolution_m", {"control.interface=velocity"}},
       {"racing.first_cases", {"racing.kind=halving"}},
       {"racing.eta", {"racing.kind=halving"}},
       {"racing.margin", {"racing.kind=abandonment"}},
@@ -251,12 +255,13 @@ TEST(Settings, DefaultsAreThoseOfAProblemThatLeavesThemOut) {
   const LoadedProblem base = folder.load("base.toml");
   for (const ListedSetting& one : list_settings(problem_settings())) {
     // Settings of a kind that the problem does not have cannot be set to the default.
-    const bool is_of_kind = one.path.starts_with("path.") || one.path.starts_with("function.") ||
-                            one.path.starts_with("racing.") || one.path.starts_with("program.") ||
-                            one.path.starts_with("command.") || one.path.starts_with("cases.") ||
-                            one.path.find("[]") != std::string::npos ||
-                            one.path == "objective.cvar_share" ||
-                            one.path == "objective.failure_penalty_m";
+    const bool is_of_kind =
+        one.path.starts_with("path.") || one.path.starts_with("function.") ||
+        one.path.starts_with("racing.") || one.path.starts_with("program.") ||
+        one.path.starts_with("command.") || one.path.starts_with("cases.") ||
+        one.path.find("[]") != std::string::npos || one.path == "control.bandwidth_hz" ||
+        one.path == "control.delay_s" || one.path.starts_with("control.resolution_") ||
+        one.path == "objective.cvar_share" || one.path == "objective.failure_penalty_m";
     // 0 is no density: it stands for a missing one.
     if (is_of_kind || one.setting->default_text.empty() || one.path == "robot.density_kg_per_m3") {
       continue;

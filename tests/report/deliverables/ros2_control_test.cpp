@@ -94,6 +94,45 @@ TEST_F(Ros2Control, KiltedHasBothLimitsOfTheIntegral) {
   EXPECT_THAT(text, Not(HasSubstr("        i_clamp: ")));
 }
 
+TEST_F(Ros2Control, AVelocityIsClampedToTheSpeedLimits) {
+  design_.controller = "pid_velocity";
+  for (std::size_t i = 0; i < 3; ++i) {
+    robot_.joints[i].speed_limit = 0.5 + static_cast<double>(i);
+    design_.joints[i].gains.push_back(0.9);
+  }
+  const std::string text = make(kJazzy);
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("    command_interfaces:\n      - \"velocity\"\n"),
+                    HasSubstr("\"rail\":  # slides: p in 1/s, i in 1/s^2, d in 1; effort -4 to "
+                              "5 N\n"),
+                    HasSubstr("        i_clamp: 1.5\n        u_clamp_max: 1.5\n"
+                              "        u_clamp_min: -1.5\n"),
+                    HasSubstr("ff_velocity_scale: 0.9\n")));
+  robot_.joints[2].speed_limit = std::numeric_limits<double>::infinity();
+  expect_refused(AllOf(HasSubstr("elbow: the joint has no speed limit"), HasSubstr("<limit>")));
+}
+
+TEST_F(Ros2Control, APositionGoesThroughAPidController) {
+  design_.controller = "pid_position";
+  const std::string jazzy = make(kJazzy);
+  EXPECT_THAT(jazzy,
+              AllOf(HasSubstr("    command_joints:\n      - \"pid_controller/rail\"\n"),
+                    HasSubstr("    command_interface: \"position\"\n"),
+                    HasSubstr("    enable_feedforward: true\n"),
+                    HasSubstr("        feedforward_gain: 1.0\n"),
+                    HasSubstr("        angle_wraparound: true\n"), Not(HasSubstr("i_clamp:"))));
+  EXPECT_THAT(make(kKilted), Not(HasSubstr("enable_feedforward")));
+  EXPECT_FALSE(has_interface(ros2_distributions()[kHumble], design_));
+  try {
+    make(kHumble);
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("ROS 2 Humble"), HasSubstr("cannot command positions"),
+                      HasSubstr("control.interface")));
+  }
+}
+
 TEST_F(Ros2Control, TheUpdateRateIsThePeriodsInverse) {
   for (const auto& [period_s, line] :
        {std::pair{0.01, "    update_rate: 100 "}, std::pair{0.001, "    update_rate: 1000 "},

@@ -52,10 +52,12 @@ bool have_same_drives(const RobotModel& a, const RobotModel& b) {
 }
 
 // Throws Error{usage}, as every engine does, if the design's numbers make no controller.
-void check_design(const ArmDesign& design, const RobotModel& robot) {
+void check_design(const ArmDesign& design, const RobotModel& robot, const ArmDrives& drives) {
   const ControllerRow& row = find_controller(design.controller);
   for (std::size_t i = 0; i < design.joints.size(); ++i) {
-    row.make(design.joints[i].gains, design.joints[i].limits, robot.joints[i].kind);
+    const Joint& joint = robot.joints[i];
+    row.make(design.joints[i].gains, drives.get_command_limits(joint, design.joints[i].limits),
+             joint.kind);
   }
 }
 
@@ -75,9 +77,9 @@ class ArticulatedEngine final : public PhysicsEngine {
     };
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       if (i == 0 || jobs[i].design != jobs[i - 1].design) {
-        check_design(*jobs[i].design, setup.robot());
+        check_design(*jobs[i].design, setup.robot(), setup.task().drives);
       }
-      check_feed_forward(jobs[i]);
+      check_controller(setup.task(), jobs[i]);
       if (apply_unreachable(jobs[i], results[i])) {
         continue;
       }
@@ -92,7 +94,8 @@ class ArticulatedEngine final : public PhysicsEngine {
       (found == alike.end() ? alike.emplace_back() : *found).push_back(i);
     }
     for (const std::vector<std::size_t>& group : alike) {
-      const bool has_plant = get_setup(group.front()).robot().has_plant();
+      const bool has_plant =
+          get_setup(group.front()).robot().has_plant() || setup.task().drives.has_loops();
       const Kernel<T>& kernel = has_plant ? kernels_.plant : kernels_.ideal;
       const std::size_t most = kGroups * static_cast<std::size_t>(kernel.lanes);
       for (std::size_t first = 0; first < group.size(); first += most) {
@@ -113,7 +116,7 @@ class ArticulatedEngine final : public PhysicsEngine {
     if (!job.targets->unreachable.empty()) {
       return {};
     }
-    check_feed_forward(job);
+    check_controller(setup.task(), job);
     return calc_point_derivatives(setup, job, directions);
   }
 

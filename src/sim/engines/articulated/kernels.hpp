@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "sim/dynamics/chain_layout.hpp"
+#include "sim/dynamics/drive_loop.hpp"
 
 namespace armwright {
 enum class SimdLevel : std::uint8_t;
@@ -84,7 +85,7 @@ constexpr int calc_state_packs(int joints) {
   return joints * kStateFields + kStateSingles;
 }
 // The control packs follow the state packs: first the controller's states, then its gains, each of
-// them a field.
+// them a field, last the drives (drive_loop.hpp), if there are any.
 constexpr int calc_control_packs(int joints, int states, int gains) {
   return joints * (states + gains);
 }
@@ -117,6 +118,8 @@ struct SegmentCall {
   const T* model = nullptr;             // calc_model_packs() packs
   T* state = nullptr;                   // calc_state_packs() packs and the control packs
   int control_packs = 0;
+  T* loops = nullptr;  // the drives among the control packs; null: controllers command efforts
+  CommandClock clock;  // of the drives
   // Computes the efforts of one step for all joints. Null: the PID, which the kernels have inlined.
   void (*control)(SegmentCall& call, int step) = nullptr;
   T* scratch = nullptr;  // calc_scratch_packs() packs, for chains of any length

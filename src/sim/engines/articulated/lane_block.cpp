@@ -34,6 +34,8 @@ class LaneBlock {
   // Return the first number of the slot's lane; its next packs lie lanes() apart.
   T* state(std::size_t slot) const;
   T* model(std::size_t slot) const;
+  // Returns the first number of the drives of a state.
+  T* loops(T* state) const { return state + state_size_ - calc_size(drive_packs_, kernel_.lanes); }
   void place(std::size_t slot, std::size_t job);
   void reserve_plants(std::span<const std::size_t> chosen, std::size_t groups);
   void place_plant(std::size_t slot, std::size_t job);
@@ -64,6 +66,8 @@ class LaneBlock {
   std::vector<std::uint8_t> flags_;
   void (*control_)(SegmentCall<T>& call, int step) = nullptr;
   int control_packs_ = 0;
+  CommandClock clock_;   // at the start of the case
+  int drive_packs_ = 0;  // of the control packs; 0: controllers command efforts
   // Count of numbers per pack of lanes (record_size_: per step).
   std::size_t state_size_, model_size_, record_size_;
   bool has_plant_ = false;
@@ -92,6 +96,12 @@ LaneBlock<T>::LaneBlock(const TrackingSetup& setup, const Kernel<T>& kernel,
   const std::size_t groups = (chosen.size() + lanes() - 1) / lanes();
   control_packs_ =
       calc_control_packs(n, controller_.states, static_cast<int>(controller_.gains.size()));
+  const TrackingTask& task = setup.task();
+  if (task.drives.has_loops()) {
+    clock_ = task.drives.make_clock(task.control_period_s, task.physics.substeps);
+    drive_packs_ = calc_drive_packs(n, clock_);
+    control_packs_ += drive_packs_;
+  }
   kernel.find_control(controller_.law, control_);
   state_size_ = calc_size(calc_state_packs(n) + control_packs_, kernel.lanes);
   model_size_ = calc_size(calc_model_packs(n), kernel.lanes);
@@ -163,10 +173,12 @@ void LaneBlock<T>::place(std::size_t slot, std::size_t job) {
     set(kQ, one.targets->start_positions[i]);
     set(kMotor, one.targets->start_positions[i]);
     set(kIntegrating, 1);
-    set(kEffortMin, drive.limits.min);
-    set(kEffortMax, drive.limits.max);
+    const EffortLimits limits =
+        setup_.task().drives.get_command_limits(setup_of(job).robot().joints[i], drive.limits);
+    set(kEffortMin, limits.min);
+    set(kEffortMax, limits.max);
     if (!one.targets->holding_effort.empty()) {
-      controller_.hold(one.targets->holding_effort[i], drive.limits, drive.gains, held.data());
+      controller_.hold(one.targets->holding_effort[i], limits, drive.gains, held.data());
       for (std::size_t k = 0; k < held.size(); ++k) {
         numbers[(first_control + k * joints_ + i) * lanes()] = static_cast<T>(held[k]);
       }
@@ -179,6 +191,16 @@ void LaneBlock<T>::place(std::size_t slot, std::size_t job) {
   }
   numbers[(kStateFields * joints_ + kCutoffSquared) * lanes()] =
       static_cast<T>(one.cutoff_m * one.cutoff_m);
+  if (drive_packs_ > 0) {
+    const auto set = [&](std::size_t pack, double value) {
+      loops(numbers)[pack * lanes()] = static_cast<T>(value);
+    };
+    set_drive_packs(setup_of(job), one, clock_, set);
+    for (std::size_t i = 0; i < joints_; ++i) {
+      set(kMotorMin * joints_ + i, one.design->joints[i].limits.min);
+      set(kMotorMax * joints_ + i, one.design->joints[i].limits.max);
+    }
+  }
   if (has_plant_) {
     place_plant(slot, job);
   }
@@ -252,7 +274,7 @@ void LaneBlock<T>::set_plant(std::size_t first, const Segment& timeline,
     return;
   }
   call.plant = plants_.data() + first / lanes() * plant_size_;
-  set_drives(drives_, perturbed_, call);
+  set_drives(drives_, setup_.task().drives, perturbed_, call);
   call.balances = balances_.data();
   if (!perturbed_) {
     return;
@@ -341,6 +363,11 @@ void LaneBlock<T>::run_segment(std::size_t group, std::size_t segment) {
   call.state = state(first);
   call.control_packs = control_packs_;
   call.control = control_;
+  if (drive_packs_ > 0) {
+    call.loops = loops(state(first));
+    call.clock = clock_;
+    call.clock.substep = std::int64_t{timeline.first_step} * clock_.substeps;
+  }
   call.scratch = scratch_.data();
   call.steps = timeline.steps;
   call.window_start = timeline.window_start;

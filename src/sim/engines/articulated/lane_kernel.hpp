@@ -1,6 +1,6 @@
 // One segment of the tracking timeline for a pack of lanes, with the order of steps of TrackingLoop
-// (tracking_loop.hpp). In each control period, the controllers compute efforts from the positions
-// at its start, the plant takes its steps with the efforts held (semi-implicit Euler: qd += h
+// (tracking_loop.hpp). In each control period, the controllers compute efforts (or commands of
+// drives) from the positions at its start, the plant takes its steps with these held (semi-implicit Euler: qd += h
 // qdd(q, qd); q += h qd), and the measures are taken at its end.
 #pragma once
 
@@ -61,6 +61,9 @@ class SegmentKernel {
       const bool measuring = recording || step >= call_.window_start;
       for (int substep = 1; substep <= call_.substeps; ++substep) {
         dynamics_.calc_equations(q, rate);
+        if constexpr (kPlant == PlantKind::driven) {
+          plant_.begin_drives(&effort_[0], dynamics_, substep_s);
+        }
         const V* const acting = plant_.calc_effort(&effort_[0], q, rate, substep_s);
         plant_.add_inertia(dynamics_);
         dynamics_.solve(acting, &acceleration_[0]);
@@ -76,8 +79,12 @@ class SegmentKernel {
       if (!check(step)) {
         return;
       }
-      plant_.take_motor_ways(way_);
-      add_measures();
+      if constexpr (kPlant == PlantKind::driven) {
+        plant_.add_measures(&effort_[0]);
+      } else {
+        plant_.take_motor_ways(way_);
+        add_measures();
+      }
       if (measuring) {
         const Vec3<V> tip = dynamics_.calc_tip(q);
         if (recording) {
@@ -296,7 +303,9 @@ void run_plant_kind(SegmentCall<typename V::Scalar>& call) {
 // Runs joints that have plants.
 template <class V>
 void run_plant(SegmentCall<typename V::Scalar>& call) {
-  if (call.elastic || call.past != nullptr) {
+  if (call.loops != nullptr) {  // one kernel, because each takes long to compile
+    SegmentKernel<V, AnyChain, PlantKind::driven>::run(call);
+  } else if (call.elastic || call.past != nullptr) {
     run_plant_kind<V, PlantKind::full>(call);
   } else {
     run_plant_kind<V, PlantKind::rigid>(call);

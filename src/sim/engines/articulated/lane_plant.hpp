@@ -15,14 +15,16 @@ enum class PlantKind {
   ideal,      // none
   perturbed,  // a PlantVariation of ideal joints
   rigid,      // rotors, friction and counterbalances
-  full,       // all
+  full,       // all but drives
+  driven,     // all, and controllers command drives
 };
 
 // The plant of one kind. Its functions take the true positions and rates of the joints. This one
-// is for the kinds `rigid` and `full`.
+// is for the kinds `rigid`, `full` and `driven`.
 template <class V, class Chain, PlantKind kKind>
 class LanePlant {
-  static constexpr bool kFull = kKind == PlantKind::full;
+  static constexpr bool kDriven = kKind == PlantKind::driven;
+  static constexpr bool kFull = kKind == PlantKind::full || kDriven;
 
  public:
   using T = typename V::Scalar;
@@ -57,13 +59,46 @@ class LanePlant {
     if (kFull && call_.past != nullptr) {
       remember(call_, rare_);
     }
+    if constexpr (kDriven) {
+      end_drives();
+    }
   }
 
-  // Returns the efforts that act on the links during a substep, given those of the controllers.
+  // Lets the drives begin a substep with what the controllers command, for the kind `driven`. Call
+  // it before calc_effort(), with the present equations.
+  template <class Dynamics>
+  ARMWRIGHT_INLINE void begin_drives(const V* commands, const Dynamics& dynamics, V substep_s) {
+    const DriveLoops<V> drives = get_drives();
+    for (int i = 0; i < call_.joints; ++i) {
+      drives.command(i, commands[i]);
+      const V rate = get_motor_rate(i);
+      V own = number(kArmature, i);
+      V bias = dynamics.bias(i);
+      const V inertia = dynamics.mass(i, i) + own;
+      if (has(kElastic, i)) {
+        bias = number(kStiffness, i) * (get_state(call_, kMotor, i) - get_state(call_, kQ, i)) +
+               number(kDamping, i) * (rate - get_state(call_, kRate, i));
+      } else {
+        own = inertia;
+        if (has(kBalanced, i)) {
+          bias -= calc_balance(call_.balances[i], get_state(call_, kQ, i), chain_.slides(i));
+        }
+      }
+      V friction = V(0);
+      rub(i, rate, substep_s, friction);
+      const bool motor = has(kMeasuresMotor, i);
+      rare_[call_.joints + i] =
+          drives.begin(i, get_state(call_, motor ? kMotor : kQ, i), rate, inertia, own,
+                       bias - friction, chain_.slides(i), substep_s);
+    }
+  }
+
+  // Returns the efforts that act on the links during a substep, given what the controllers command.
   // Computes the inertia that joins each joint, and moves the motors of elastic joints to the end
   // of the substep.
   ARMWRIGHT_INLINE const V* calc_effort(const V* effort, const V* q, const V* rate, V substep_s) {
-    chain_.for_up([&](auto i) __attribute__((always_inline)) { effort_[i] = effort[i]; });
+    const V* const applied = kDriven ? rare_ + call_.joints : effort;
+    chain_.for_up([&](auto i) __attribute__((always_inline)) { effort_[i] = applied[i]; });
     if (kFull && call_.past != nullptr) {
       V* const perturbed = rare_ + call_.joints;
       chain_.for_up([&](auto i) __attribute__((always_inline)) { perturbed[i] = effort_[i]; });
@@ -76,6 +111,9 @@ class LanePlant {
         inertia_[i] = V(0);
       } else {
         inertia_[i] = rub(i, rate[i], substep_s, effort_[i]);
+        if constexpr (kDriven) {
+          inertia_[i] += get_drives().get_inertia(i, substep_s);
+        }
       }
       if (has(kBalanced, i)) {
         effort_[i] += calc_balance(call_.balances[i], q[i], chain_.slides(i));
@@ -83,7 +121,7 @@ class LanePlant {
     });
     return &effort_[0];
   }
-  // Adds the inertia of the motors of rigid joints, and what is implicit in the friction.
+  // Adds the inertia of the motors of rigid joints, and what is implicit in friction and drives.
   template <class Dynamics>
   ARMWRIGHT_INLINE void add_inertia(Dynamics& dynamics) const {
     chain_.for_up([&](auto i)
@@ -98,6 +136,22 @@ class LanePlant {
         ways[i] = has(kElastic, i) ? motor_ways()[i] : ways[i];
         motor_ways()[i] = V(0);
       });
+    }
+  }
+  // Adds the measures of a control period's efforts to the state, and replaces the commands by the
+  // drives' last efforts.
+  ARMWRIGHT_INLINE void add_measures(V* commands) const {
+    const DriveLoops<V> drives = get_drives();
+    const V share = T{1} / static_cast<T>(call_.substeps);
+    V& energy = reinterpret_cast<V*>(call_.state)[kStateFields * call_.joints + kEnergy];
+    for (int i = 0; i < call_.joints; ++i) {
+      V& peak = get_state(call_, kPeakEffort, i);
+      peak = max(peak, drives.get(kPeriodPeak, i));
+      get_state(call_, kSquaredEffort, i) += share * drives.get(kPeriodSquares, i);
+      get_state(call_, kClampedSteps, i) += share * drives.get(kPeriodClamped, i);
+      energy += drives.get(kPeriodWork, i);
+      commands[i] = drives.get(kMotorEffort, i);
+      drives.clear_measures(i);
     }
   }
 
@@ -121,7 +175,10 @@ class LanePlant {
     V& rate = get_state(call_, kMotorRate, i);
     const V spring = number(kStiffness, i) * (place - q) + number(kDamping, i) * (rate - link_rate);
     effort -= spring;
-    const V inertia = rub(i, rate, substep_s, effort);
+    V inertia = rub(i, rate, substep_s, effort);
+    if constexpr (kDriven) {
+      inertia += get_drives().get_inertia(i, substep_s);
+    }
     rate += substep_s * (effort / inertia);
     const V way = substep_s * rate;
     place += way;
@@ -144,6 +201,21 @@ class LanePlant {
     return number(kArmature, i) + substep_s * chord;
   }
 
+  ARMWRIGHT_INLINE DriveLoops<V> get_drives() const {
+    return {reinterpret_cast<V*>(call_.loops), call_.joints, call_.clock};
+  }
+  ARMWRIGHT_INLINE V get_motor_rate(int i) const {
+    return get_state(call_, has(kElastic, i) ? kMotorRate : kRate, i);
+  }
+  ARMWRIGHT_INLINE void end_drives() const {
+    const DriveLoops<V> drives = get_drives();
+    const V substep_s = call_.period_s / static_cast<T>(call_.substeps);
+    for (int i = 0; i < call_.joints; ++i) {
+      drives.end(i, get_motor_rate(i), substep_s);
+    }
+    ++call_.clock.substep;
+  }
+
   // The compiler inlines none of these functions, because few plants need them. They are static: if
   // they had a pointer to this object, the compiler would keep it in memory.
   __attribute__((noinline)) static void show_measured(SegmentCall<T>& call, V* held) {
@@ -156,6 +228,12 @@ class LanePlant {
       const AnyChain chain(call.joints, call.flags, call.tilted_gravity);
       V* scratch = held + 2 * call.joints;
       Perturbed(call, chain, scratch).show_measured(q);
+    }
+    if constexpr (kDriven) {
+      const DriveLoops<V> drives(reinterpret_cast<V*>(call.loops), call.joints, call.clock);
+      for (int i = 0; i < call.joints; ++i) {
+        q[i] = drives.measure(i, q[i], (call.flags[i] & kPrismatic) != 0);
+      }
     }
   }
   __attribute__((noinline)) static void remember(SegmentCall<T>& call, V* measured) {

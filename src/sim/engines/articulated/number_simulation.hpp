@@ -191,11 +191,20 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
   const int n = chain.joints();
   const std::vector<V> model(chain.numbers().begin(), chain.numbers().end());
   const ControllerRow& controller = find_controller(job.design->controller);
-  const int control_packs =
+  const ArmDrives& arm_drives = own.task().drives;
+  const CommandClock clock =
+      arm_drives.make_clock(own.task().control_period_s, own.task().physics.substeps);
+  const int law_packs =
       calc_control_packs(n, controller.states, static_cast<int>(controller.gains.size()));
+  const int control_packs = law_packs + (arm_drives.has_loops() ? calc_drive_packs(n, clock) : 0);
   std::vector<V> state(static_cast<std::size_t>(calc_state_packs(n) + control_packs), V(0));
   std::vector<V> final_state = state;
   std::vector<V> scratch(static_cast<std::size_t>(calc_scratch_packs(n)), V(0));
+  V* const loops = state.data() + calc_state_packs(n) + law_packs;  // if there are any
+  if (arm_drives.has_loops()) {
+    set_drive_packs(own, job, clock,
+                    [&](std::size_t pack, double value) { loops[pack] = V(value); });
+  }
   for (int i = 0; i < n; ++i) {
     const auto set = [&](StateField field, const V& value) {
       state[static_cast<std::size_t>(field * n + i)] = value;
@@ -204,8 +213,17 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     set(kQ, V(job.targets->start_positions[static_cast<std::size_t>(i)]));
     set(kMotor, V(job.targets->start_positions[static_cast<std::size_t>(i)]));
     set(kIntegrating, V(1));
-    set(kEffortMin, V(drive.effort_min));
-    set(kEffortMax, V(drive.effort_max));
+    if (arm_drives.has_loops()) {
+      const EffortLimits limits =
+          arm_drives.get_command_limits(own.robot().joints[static_cast<std::size_t>(i)], {});
+      set(kEffortMin, V(limits.min));
+      set(kEffortMax, V(limits.max));
+      loops[kMotorMin * n + i] = V(drive.effort_min);
+      loops[kMotorMax * n + i] = V(drive.effort_max);
+    } else {
+      set(kEffortMin, V(drive.effort_min));
+      set(kEffortMax, V(drive.effort_max));
+    }
     V* const control = state.data() + calc_state_packs(n) + i;
     V* const gains = control + controller.states * n;
     for (std::size_t gain = 0; gain < drive.gains.size(); ++gain) {
@@ -221,7 +239,7 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
   std::vector<V> plant;
   std::vector<std::uint8_t> flags;  // DriveFlag bits
   std::vector<BalanceGrid> balances;
-  if (own.robot().has_plant()) {
+  if (own.robot().has_plant() || arm_drives.has_loops()) {
     plant.assign(static_cast<std::size_t>(calc_plant_packs(n)), V(0));
     for (int i = 0; i < n; ++i) {
       const JointPlant& its = joints[static_cast<std::size_t>(i)].plant;
@@ -261,6 +279,11 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     call.state = state.data();
     call.control_packs = control_packs;
     call.control = find_control<V>(controller.law, controllers::AllLaws{});
+    if (arm_drives.has_loops()) {
+      call.loops = loops;
+      call.clock = clock;
+      call.clock.substep = static_cast<long>(segment.first_step) * clock.substeps;
+    }
     call.scratch = scratch.data();
     call.steps = segment.steps;
     call.window_start = segment.window_start;
@@ -274,10 +297,12 @@ std::vector<Number> calc_squared_errors(const TrackingSetup& setup, const Tracki
     call.alive = 1;
     call.final_state = final_state.data();
     call.plant = plant.empty() ? nullptr : plant.data();
-    set_drives(flags, false, call);
+    set_drives(flags, arm_drives, false, call);
     call.balances = balances.data();
     // There are fewer kernels than for simulations because each takes long to compile.
-    if (call.plant != nullptr) {
+    if (call.loops != nullptr) {
+      SegmentKernel<V, AnyChain, PlantKind::driven>::run(call);
+    } else if (call.plant != nullptr) {
       SegmentKernel<V, AnyChain, PlantKind::full>::run(call);
     } else if (is_palletiser(call)) {
       SegmentKernel<V, Palletiser>::run(call);

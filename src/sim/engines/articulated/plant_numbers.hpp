@@ -5,6 +5,7 @@
 
 #include "sim/dynamics/joint_effort.hpp"
 #include "sim/engines/articulated/kernels.hpp"
+#include "sim/tracking/simulation.hpp"
 
 namespace armwright::articulated {
 
@@ -21,13 +22,30 @@ inline std::uint8_t get_drive_flags(const JointPlant& plant) {
 // Sets what the call needs to know of the joints' DriveFlag bits. `perturbed`: the plants have a
 // PlantVariation.
 template <class T>
-void set_drives(const std::vector<std::uint8_t>& drives, bool perturbed, SegmentCall<T>& call) {
+void set_drives(const std::vector<std::uint8_t>& drives, const ArmDrives& arm_drives,
+                bool perturbed, SegmentCall<T>& call) {
   call.drives = drives.data();
   call.elastic = false;
-  call.measures_apart = perturbed;
+  call.measures_apart = perturbed || arm_drives.has_resolution();
   for (const std::uint8_t flags : drives) {
     call.elastic |= (flags & kElastic) != 0;
     call.measures_apart |= (flags & kMeasuresMotor) != 0;
+  }
+}
+
+// Sets the drives of a job: calls set(pack, number) for the numbers of their packs that are not 0,
+// but not for the effort limits.
+template <class Set>
+void set_drive_packs(const TrackingSetup& setup, const TrackingJob& job, const CommandClock& clock,
+                     const Set& set) {
+  const std::size_t joints = setup.robot().joint_count();
+  const std::vector<double>& start = job.targets->start_positions;
+  const std::vector<double> holding = setup.calc_holding_efforts(start);
+  for (std::size_t i = 0; i < joints; ++i) {
+    setup.task().drives.set_numbers(setup.robot().joints[i], holding[i], start[i], clock,
+                                    [&](int field, double number) {
+                                      set(static_cast<std::size_t>(field) * joints + i, number);
+                                    });
   }
 }
 

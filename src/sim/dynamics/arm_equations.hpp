@@ -1,0 +1,29 @@
+// The equations of motion of an arm (chain_dynamics.hpp) as single numbers.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "sim/dynamics/chain_model.hpp"
+
+namespace armwright::articulated {
+
+// The chain must outlive the object.
+class ArmEquations {
+ public:
+  explicit ArmEquations(const ChainModel& chain);
+  ~ArmEquations();
+
+  // Computes the equations for joint positions (rad or m) and rates (rad/s or m/s).
+  void set(std::span<const double> q, std::span<const double> rate);
+  // Return the effort (N m or N) that gravity and the rates ask of a joint, and an element of the
+  // links' mass matrix (kg m^2, kg m or kg).
+  double bias(std::size_t joint) const;
+  double mass(std::size_t row, std::size_t column) const;
+
+ private:
+  struct Numbers;
+  std::unique_ptr<Numbers> numbers_;
+};
+
+}  // namespace armwright::articulated
