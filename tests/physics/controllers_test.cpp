@@ -158,7 +158,9 @@ TEST_P(UnderController, HoldsTheArmFromTheFirstPeriodOn) {
   for (const std::string& name : engine_names()) {
     const auto engine = make_engine(name);
     const double sag_m = calc_sag_m(*engine, task, ControlStart::empty, design);
-    EXPECT_GT(sag_m, 1e-3) << name;
+    if (find_controller(GetParam()).interface == ControlInterface::effort) {
+      EXPECT_GT(sag_m, 1e-3) << name;  // drives with an inner loop hold the arm themselves
+    }
     const double held_m = calc_sag_m(*engine, task, ControlStart::gravity, design);
     if (has_hold) {
       EXPECT_LT(held_m, 1e-6) << name;

@@ -208,7 +208,13 @@ const SettingTable kVariableSettings{
 void read_variables(const ConfigTable& variables, const ConfigTable& control,
                     const std::filesystem::path& urdf, TrackingConfig& config,
                     LoadedProblem& loaded) {
-  if (variables.get(kVariablesStart) == kProposedStart) {
+  const bool is_proposed = variables.get(kVariablesStart) == kProposedStart;
+  if (variables.find(kVariablesStartBandwidth) && !is_proposed) {
+    variables.refuse(kVariablesStartBandwidth,
+                     "it belongs to a proposed start; leave it out, or set variables.start to "
+                     "\"proposed\"");
+  }
+  if (is_proposed) {
     name_robot_file(urdf, [&] { config.start = propose_start(variables, config); });
   } else if (is_gains_file(variables.get(kVariablesStart))) {
     const auto start = resolve_named(variables, kVariablesStart, "gains");

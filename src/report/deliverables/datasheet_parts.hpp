@@ -70,7 +70,7 @@ th, td { padding: .1mm .8mm; border-bottom: .1mm solid #bbb; overflow: hidden; t
 th { font-weight: normal; color: #444; text-align: left; }
 tr:first-child th { font-size: 7pt; font-weight: bold; color: #111; border-bottom: .2mm solid #111; text-align: right; vertical-align: bottom; white-space: normal; overflow-wrap: anywhere; }
 tr:first-child th:first-child { text-align: left; }
-th:first-child { width: 34mm; }
+th:first-child { width: 34mm; white-space: normal; }
 td { text-align: right; font-variant-numeric: tabular-nums; }
 td.green { background: #d3ecd3; }
 td.yellow { background: #fbedb4; }

@@ -132,7 +132,7 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
 // it proposed, which the problem's record in the study's folder has.
 std::vector<std::vector<std::string>> list_old_arms(const std::filesystem::path& folder,
                                                     const std::string& label) {
-  std::vector<std::string> arm = {kNoDynamics, kNoPlant, kEmptyStart};
+  std::vector<std::string> arm = {kNoDynamics, kNoPlant, kNoRepair, kEmptyStart};
   const auto file = folder / make_problem_name(label);
   if (path_exists(file)) {
     const std::string text = read_file(file, kPlanLimit_bytes);

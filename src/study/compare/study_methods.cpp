@@ -94,6 +94,9 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
   if (problem.loaded.tracking() != nullptr && !resolved["robot"].contains("plant")) {
     settings.emplace_back(kNoPlant);
   }
+  if (problem.loaded.tracking() != nullptr && !resolved["robot"].contains("repair")) {
+    settings.emplace_back(kNoRepair);
+  }
   const auto control = resolved.find("control");
   if (problem.loaded.tracking() != nullptr &&
       (control == resolved.end() || !control->contains("start"))) {

@@ -319,6 +319,8 @@ std::vector<std::string> find_old_settings(const std::filesystem::path& folder,
       kScalarSolver);
   add(arm->config().own_effort_limits && lacks("/robot/dynamics"), kNoDynamics);
   add(arm->config().own_effort_limits && lacks("/robot/plant"), kNoPlant);
+  add(find(json::parse(problem.resolved_json), "/robot/repair") == true && lacks("/robot/repair"),
+      kNoRepair);
   add(arm->config().task.control_start == ControlStart::gravity && lacks("/control/start"),
       kEmptyStart);
   for (const std::string& setting : list_first_proposal(recorded)) {

@@ -76,11 +76,13 @@ void cover_run(const Folder& folder, bool has_ended);
 bool has_first_selection(const std::filesystem::path& folder);
 
 // The settings with which a problem is what it was in version 1.0: the plain form of a function, the
-// solver of the numeric inverse kinematics, ideal joints, and controllers that start empty.
+// solver of the numeric inverse kinematics, ideal joints of a file that is read strictly, and
+// controllers that start empty.
 inline constexpr const char* kPlainForm = "function.instance=0";
 inline constexpr const char* kScalarSolver = "task.solver=scalar";
 inline constexpr const char* kNoDynamics = "robot.dynamics=false";
 inline constexpr const char* kNoPlant = "robot.plant=\"\"";
+inline constexpr const char* kNoRepair = "robot.repair=false";
 inline constexpr const char* kEmptyStart = "control.start=empty";
 
 // Returns the settings that the run in the folder needs in addition to `settings`, with which

@@ -16,9 +16,7 @@ constexpr const char* kTopKeys =
 constexpr const char* kTaskKeys =
     "signal, speed_m_per_s, distance_limit_m, trapezoid_acceleration_m_per_s2, rest_s, "
     "count_first_point, ik_bug, load_kg, load_inertia_kg_m2, load_com_m, kinematics, solver, "
-    "limits, "
-    "orientation, tool_rpy_rad, tool_axis, "
-    "orientation_arm_m, home";
+    "limits, floor_m, orientation, tool_rpy_rad, tool_axis, orientation_arm_m, home";
 
 struct Mistake {
   std::string text;     // behind `extends = "base"`, from line 2 on
@@ -109,7 +107,7 @@ const std::vector<Mistake> kControl = {
          join(controller_names(), ", ")},
     {"[control]\nperiod = 0.01",
      "3: unknown key control.period; did you mean 'control.period_s'? Valid here: period_s, "
-     "interface, bandwidth_hz, delay_s, resolution_rad, resolution_m, controller"},
+     "start, interface, bandwidth_hz, delay_s, resolution_rad, resolution_m, controller"},
 };
 INSTANTIATE_TEST_SUITE_P(Control, BadSection, testing::ValuesIn(kControl));
 
@@ -247,9 +245,13 @@ const std::vector<Mistake> kVariables = {
      "3: variables.bounds_factor is 1; it must be a finite number > 1 and <= 1000000000"},
     {"[variables]\nbound_factor = 10",
      "3: unknown key variables.bound_factor; did you mean 'variables.bounds_factor'? Valid here: "
-     "start, within_effort_limits, bounds_factor, optimize, joint, task, length_bounds_factor, "
-     "section_bounds_factor, "
-     "speed_bounds_factor"},
+     "start, start_bandwidth_rad_per_s, within_effort_limits, bounds_factor, optimize, joint, "
+     "task, "
+     "length_bounds_factor, section_bounds_factor, speed_bounds_factor"},
+    {"[variables]\nstart_bandwidth_rad_per_s = 5",
+     "3: variables.start_bandwidth_rad_per_s is 5; it belongs to a proposed start; leave it out, "
+     "or "
+     "set variables.start to \"proposed\""},
     {"[[variables.joint]]\nname = 'joint_9'\noptimize = ['p']",
      "3: unknown variables.joint[0].name 'joint_9'; did you mean 'joint_1'? Valid: joint_1, "
      "joint_2, joint_3, joint_4"},

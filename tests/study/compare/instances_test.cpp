@@ -74,6 +74,36 @@ TEST_F(StudyTest, AStudyOfVersion1GoesOnWithThePlainForm) {
             make_analytic("rastrigin", 3)->description().known_optimum);
 }
 
+// Its problem has a workspace, a speed and a start that are not proposed any more.
+TEST_F(StudyTest, AStudyOfVersion1KeepsWhatWasProposed) {
+  StudyRequest request;
+  request.problems = {"robot"};
+  request.optimizers = {"random"};
+  request.settings = {"robot.urdf=\"planar2\"", "sets.validation_cases=2", "sets.test_cases=2",
+                      "schedule.cases=1"};
+  request.baselines = false;
+  request.replicates = 1;
+  request.budget = 4;
+  StudyPlan old = make_study_plan(request);
+  std::vector<std::string> then = request.settings;
+  then.insert(then.end(),
+              {"robot.dynamics=false", "robot.plant=\"\"", "robot.repair=false",
+               "control.start=empty", "task.solver=scalar", "control.period_s=0.01",
+               "physics.substeps=10", "workspace.centre_m=[0.4, 0, 1.2]", "workspace.radius_m=0.1",
+               "workspace.shortest_move_m=0.01", "workspace.normal=[0, 1, 0]",
+               "task.home=[0.3, 0.9]", "task.distance_limit_m=0.2", "task.speed_m_per_s=0.2",
+               "variables.start_bandwidth_rad_per_s=0"});
+  old.problems[0].loaded = load_problem("robot", then);
+  study(old, "study");
+  StudyPlan now = make_study_plan(request);
+  EXPECT_NE(now.problems[0].loaded.resolved_json, old.problems[0].loaded.resolved_json);
+  adopt_recorded(temporary_ / "study", now);
+  EXPECT_EQ(now.problems[0].loaded.resolved_json, old.problems[0].loaded.resolved_json);
+  const auto before = read_cells("study");
+  study(now, "study");
+  EXPECT_EQ(read_cells("study"), before);
+}
+
 // An optimizer with settings of its own has the same function.
 TEST(StudyInstances, AnOptimizerWithSettingsHasThePlainFormTooInAPlanOfVersion1) {
   const TemporaryFolder folder;

@@ -157,6 +157,29 @@ TEST_F(RunTest, ARunOfVersion1KeepsControllersThatStartEmpty) {
       testing::IsEmpty());
 }
 
+// Its workspace, speed and start are not those that are proposed now.
+TEST_F(RunTest, ARunOfVersion1KeepsWhatWasProposed) {
+  const std::vector<std::string> asked = {"robot.urdf=\"planar2\"", "sets.validation_cases=2",
+                                          "sets.test_cases=2", "schedule.cases=1"};
+  std::vector<std::string> then = asked;
+  then.insert(then.end(),
+              {"robot.dynamics=false", "robot.plant=\"\"", "robot.repair=false",
+               "control.start=empty", "task.solver=scalar", "control.period_s=0.01",
+               "physics.substeps=10", "workspace.centre_m=[0.4, 0, 1.2]", "workspace.radius_m=0.1",
+               "workspace.shortest_move_m=0.01", "workspace.normal=[0, 1, 0]",
+               "task.home=[0.3, 0.9]", "task.distance_limit_m=0.2", "task.speed_m_per_s=0.2",
+               "variables.start_bandwidth_rad_per_s=0"});
+  RunPlan old = make_small_plan("random", 4);
+  old.problem = load_problem("robot", then);
+  old.selection.most = 0;
+  run(old, "old");
+  const LoadedProblem now = load_problem("robot", asked);
+  EXPECT_NE(now.resolved_json, old.problem.resolved_json);
+  std::vector<std::string> kept = asked;
+  std::ranges::move(find_old_settings(temporary_ / "old", now, {}), std::back_inserter(kept));
+  EXPECT_EQ(load_problem("robot", kept).resolved_json, old.problem.resolved_json);
+}
+
 TEST_F(RunTest, ResultsDoNotDependOnTheNumberOfThreads) {
   run(make_small_plan(), "one", 1);
   run(make_small_plan(), "two", 2);
