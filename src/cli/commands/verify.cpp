@@ -244,8 +244,8 @@ std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
   return {"perturbation.preset=" + setting.perturbation, "perturbation.apply_to=everywhere"};
 }
 
-// Returns the task that was proposed for the robot as settings, so that a setting with other masses
-// or another plant has the same task.
+// Returns the task and the bandwidth of the start that were proposed for the robot as settings, so
+// that a setting with other masses or another plant has the same.
 std::vector<std::string> list_proposed_task(const LoadedProblem& base) {
   const json resolved = json::parse(base.resolved_json);
   std::vector<std::string> overrides;
@@ -253,8 +253,12 @@ std::vector<std::string> list_proposed_task(const LoadedProblem& base) {
     return overrides;
   }
   const std::pair<const char*, std::vector<const char*>> proposed[] = {
-      {"task", {"orientation", "tool_rpy_rad", "home", "distance_limit_m", "speed_m_per_s"}},
-      {"workspace", {"centre_m", "radius_m", "shortest_move_m", "normal"}}};
+      {"task",
+       {"orientation", "tool_axis", "tool_rpy_rad", "home", "distance_limit_m", "speed_m_per_s",
+        "floor_m"}},
+      {"workspace", {"centre_m", "radius_m", "shortest_move_m", "normal"}},
+      {"control", {"period_s"}},
+      {"variables", {"start_bandwidth_rad_per_s"}}};
   for (const auto& [table, keys] : proposed) {
     for (const char* key : keys) {
       if (resolved.contains(table) && resolved.at(table).contains(key)) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <span>
 
 #include "base/error.hpp"
 #include "base/read_limit.hpp"
@@ -24,6 +23,7 @@ namespace {
 constexpr double kGoodStart = 0.5;
 constexpr double kStartTrials[] = {1, 0.7, 1.4, 0.5, 2, 0.35, 2.8, 0.25};
 constexpr std::size_t kStartCases = 4;
+constexpr std::size_t kStartPoints = 8;  // without the first; the moves to them are the longest
 
 std::vector<double> to_list(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
@@ -180,6 +180,20 @@ void propose_pace(const ConfigTable& table, TrackingConfig& config) {
   }
 }
 
+// Returns the beginnings of the first cases.
+std::vector<TestCase> shorten_cases(const std::vector<TestCase>& cases) {
+  std::vector<TestCase> some(cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                                kStartCases, cases.size())));
+  for (TestCase& one : some) {
+    const std::size_t points = std::min(kStartPoints + 1, one.points_m.size());
+    if (!one.continuous) {
+      one.points_m.resize(points);
+      one.turns.resize(std::min(points, one.turns.size()));
+    }
+  }
+  return some;
+}
+
 // The largest error (m) of the design on the cases. Infinite if a simulation does not end well.
 double simulate_start(const PhysicsEngine& engine, const TrackingSetup& setup,
                       const std::vector<TargetTable>& tables, const ArmDesign& design) {
@@ -247,8 +261,7 @@ ArmDesign propose_start(const ConfigTable& variables, const TrackingConfig& conf
   const ReadStep step(
       fmt::format("simulating the start of robot '{}'", sanitize(config.robot.name)));
   const TrackingSetup setup(config.robot, config.task);
-  const std::vector<TargetTable> tables =
-      setup.make_targets(std::span(cases).first(std::min(kStartCases, cases.size())));
+  const std::vector<TargetTable> tables = setup.make_targets(shorten_cases(cases));
   double best_rad_per_s = kStartBandwidth_rad_per_s;
   double least_error_m = std::numeric_limits<double>::infinity();
   for (const double share : kStartTrials) {
