@@ -158,6 +158,18 @@ TEST(RobotProposal, ToolsPointDownAboveTheFloorAndBesideTheBase) {
   }
 }
 
+// The fourth joint of this arm turns about the forearm, so the tool cannot point down everywhere.
+TEST(RobotProposal, AToolThatCannotKeepItsDirectionIsFree) {
+  const ProblemFolder folder;
+  folder.write("arm.urdf", make_arm_urdf(1));
+  EXPECT_EQ(load_robot(folder.path("arm.urdf")).tracking()->config().task.tool.orientation,
+            ToolOrientation::free);
+  EXPECT_THAT(error_of(ErrorKind::bad_data,
+                       [&] { load_robot(folder.path("arm.urdf"), {"task.orientation=pointing"}); }),
+              testing::HasSubstr("no place was found where its tool can move along straight lines "
+                                 "with task.orientation = \"pointing\""));
+}
+
 TEST(RobotProposal, FloorsAreBelowTheBase) {
   EXPECT_THAT(usage_error_of([] { load_robot("irb4600_six", {"task.floor_m=0.7"}); }),
               testing::AllOf(testing::HasSubstr("task.floor_m is 0.7"),
