@@ -7,8 +7,8 @@
 namespace armwright {
 namespace {
 
-constexpr double kRadiusOfLength = 0.05;
-constexpr int kSampledPostures = 8;
+constexpr double kCapsuleOfLength = 0.05;
+constexpr int kHeightSamples = 8;
 // A place whose height differs by less than this fraction of the arm's length does not move up or
 // down.
 constexpr double kNoHeight = 1e-6;
@@ -36,7 +36,7 @@ FloorClearance::FloorClearance(const RobotModel& robot, const NumericKinematics&
   std::vector<double> least_m(places, std::numeric_limits<double>::infinity());
   std::vector<double> most_m(places, -std::numeric_limits<double>::infinity());
   RandomStream random("floor clearance/heights", 0);
-  for (int sample = 0; sample < kSampledPostures; ++sample) {
+  for (int sample = 0; sample < kHeightSamples; ++sample) {
     const std::vector<Eigen::Vector3d> at_m =
         kinematics.calc_places(kinematics.draw_posture(random));
     for (std::size_t i = 0; i < places; ++i) {
@@ -46,7 +46,7 @@ FloorClearance::FloorClearance(const RobotModel& robot, const NumericKinematics&
   }
   for (std::size_t i = 0; i < places; ++i) {
     const bool moves = most_m[i] - least_m[i] > kNoHeight * length_m;
-    const double radius_m = i + 1 < places ? kRadiusOfLength * length_m : 0;
+    const double radius_m = i + 1 < places ? kCapsuleOfLength * length_m : 0;
     allowed_m_.push_back(moves ? floor_m + radius_m : -std::numeric_limits<double>::infinity());
   }
 }
