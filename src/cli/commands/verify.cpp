@@ -32,7 +32,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kUsualCases = 50;
-constexpr int kMostSubsteps = 1000;  // that physics.substeps may have
+constexpr const char* kSubstepsKey = "physics.substeps";
+constexpr int kMostSubsteps = 1000;  // that the key may have
 
 constexpr const char* kVerifyExamples = R"(Examples:
   armwright verify table-a10                       # a published design, on the problem it was made for
@@ -244,37 +245,15 @@ std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
   return {"perturbation.preset=" + setting.perturbation, "perturbation.apply_to=everywhere"};
 }
 
-// Returns the task and the bandwidth of the start that were proposed for the robot as settings, so
-// that a setting with other masses or another plant has the same.
-std::vector<std::string> list_proposed_task(const LoadedProblem& base) {
-  const json resolved = json::parse(base.resolved_json);
-  std::vector<std::string> overrides;
-  if (!resolved.at("robot").value("propose", false)) {
-    return overrides;
-  }
-  const std::pair<const char*, std::vector<const char*>> proposed[] = {
-      {"task",
-       {"orientation", "tool_axis", "tool_rpy_rad", "home", "distance_limit_m", "speed_m_per_s",
-        "floor_m"}},
-      {"workspace", {"centre_m", "radius_m", "shortest_move_m", "normal"}},
-      {"control", {"period_s"}},
-      {"variables", {"start_bandwidth_rad_per_s"}}};
-  for (const auto& [table, keys] : proposed) {
-    for (const char* key : keys) {
-      if (resolved.contains(table) && resolved.at(table).contains(key)) {
-        overrides.push_back(fmt::format("{}.{}={}", table, key, resolved.at(table).at(key).dump()));
-      }
-    }
-  }
-  return overrides;
-}
-
 // Returns all changes of the problem's file for this setting: those of the user, then those of the
 // setting.
 std::vector<std::string> list_overrides(const VerifyOptions& options, const VerifySetting& setting,
                                         const LoadedProblem& base) {
   const TrackingConfig& config = base.tracking()->config();
-  std::vector<std::string> changes = list_proposed_task(base);
+  // Settings with other masses or another plant have the same task, each with its own substeps.
+  std::vector<std::string> changes = list_proposals(json::parse(base.resolved_json));
+  std::erase_if(changes,
+                [](const std::string& change) { return get_override_key(change) == kSubstepsKey; });
   std::ranges::move(list_plant_overrides(setting, config), std::back_inserter(changes));
   changes.push_back("physics.engine=" + setting.engine);
   changes.push_back("physics.judging_engine=" + setting.engine);
@@ -283,7 +262,7 @@ std::vector<std::string> list_overrides(const VerifyOptions& options, const Veri
   if (!find_engine(setting.engine).simd) {
     changes.push_back("physics.simd=auto");
   }
-  changes.push_back(fmt::format("physics.substeps={}", setting.substeps));
+  changes.push_back(fmt::format("{}={}", kSubstepsKey, setting.substeps));
   changes.push_back("robot.mass_scale=" + format_exact(config.mass_scale * setting.mass_factor));
   std::vector<std::string> all;
   for (std::string& own : options.overrides.get()) {

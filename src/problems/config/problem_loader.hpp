@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -97,10 +98,10 @@ LoadedProblem load_problem(std::string_view name_or_path,
 // its file is not valid, Error{io} if the file cannot be read.
 bool needs_program(std::string_view name_or_path, std::span<const std::string> overrides);
 
-// Returns the settings with which a problem keeps what version 1.0 proposed for its robot: workspace,
-// speed, control period and start, as the run or study recorded them. Empty if it proposed nothing,
-// or if a later version made the record.
-std::vector<std::string> list_first_proposal(const nlohmann::json& recorded);
+// Returns the settings with which a problem keeps what was proposed for its robot: workspace, speed,
+// control period and start, as `resolved`, a recorded or loaded configuration of any version, has
+// them.
+std::vector<std::string> list_proposals(nlohmann::json resolved);
 
 // Loads the problem that a run recorded as LoadedProblem::resolved_json, also of a replicate
 // (make_replicate). It does not read the problem's file and starts no program. Files that the configuration names by a

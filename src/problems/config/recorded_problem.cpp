@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -63,39 +65,30 @@ void add_old_values(nlohmann::json& resolved) {
 
 }  // namespace
 
-std::vector<std::string> list_first_proposal(const nlohmann::json& recorded) {
+std::vector<std::string> list_proposals(nlohmann::json resolved) {
+  add_old_values(resolved);
+  const std::pair<const char*, std::vector<const char*>> proposed[] = {
+      {"task",
+       {"orientation", "tool_axis", "tool_rpy_rad", "home", "distance_limit_m", "speed_m_per_s",
+        "floor_m"}},
+      {"workspace", {"centre_m", "radius_m", "shortest_move_m", "normal"}},
+      {"control", {"period_s"}},
+      {"physics", {"substeps"}},
+      {"variables", {"start_bandwidth_rad_per_s"}}};
+  const bool proposes = resolved.contains("robot") && resolved.at("robot").value("propose", false);
   std::vector<std::string> settings;
-  const auto find = [&](const std::string& pointer) -> const nlohmann::json* {
-    const nlohmann::json::json_pointer place(pointer);
-    return recorded.contains(place) ? &recorded.at(place) : nullptr;
-  };
-  const nlohmann::json* const proposes = find("/robot/propose");
-  const nlohmann::json* const start = find("/variables/start");
-  const bool is_first = start != nullptr && *start == kProposedStart &&
-                        find("/variables/start_bandwidth_rad_per_s") == nullptr;
-  if (is_first) {
-    settings.push_back(fmt::format("variables.start_bandwidth_rad_per_s={}", kStartOfVersion1));
-  }
-  if (proposes == nullptr || *proposes != true || (start != nullptr && !is_first)) {
-    return settings;
-  }
-  for (const auto& [table, keys] :
-       {std::pair{"task", std::vector{"orientation", "tool_rpy_rad", "home", "distance_limit_m",
-                                      "speed_m_per_s"}},
-        std::pair{"workspace", std::vector{"centre_m", "radius_m", "shortest_move_m", "normal"}},
-        std::pair{"control", std::vector{"period_s"}}}) {
+  for (const auto& [table, keys] : proposed) {
+    // A start may be proposed for any robot.
+    if (!resolved.contains(table) || (!proposes && table != std::string_view("variables"))) {
+      continue;
+    }
     for (const char* key : keys) {
-      if (const auto* value = find(fmt::format("/{}/{}", table, key))) {
-        settings.push_back(fmt::format("{}.{}={}", table, key, write_toml(*value)));
+      if (resolved.at(table).contains(key)) {
+        settings.push_back(
+            fmt::format("{}.{}={}", table, key, write_toml(resolved.at(table).at(key))));
       }
     }
   }
-  if (find("/control/period_s") == nullptr) {
-    settings.push_back(fmt::format("control.period_s={}", *kControlPeriod.fallback));
-  }
-  const nlohmann::json* const substeps = find("/physics/substeps");
-  settings.push_back(
-      fmt::format("physics.substeps={}", substeps == nullptr ? "1" : write_toml(*substeps)));
   return settings;
 }
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "base/error.hpp"
 #include "base/read_limit.hpp"
@@ -17,11 +19,11 @@
 namespace armwright {
 namespace {
 
-// A start is simulated with these multiples of its bandwidth until its largest error is below this
-// share of the error that counts as a failure. Slower controllers help an arm that swings, faster
-// ones an arm that its weight pulls down.
+// Starts are simulated, the usual one first, until the largest error is below this share of the error
+// that counts as a failure. Slower controllers help an arm that swings, faster ones an arm that its
+// weight pulls down.
 constexpr double kGoodStart = 0.5;
-constexpr double kStartTrials[] = {1, 0.7, 1.4, 0.5, 2, 0.35, 2.8, 0.25};
+constexpr double kOtherStarts_rad_per_s[] = {7, 14, 5, 20, 3.5, 28, 2.5};
 constexpr std::size_t kStartCases = 4;
 constexpr std::size_t kStartPoints = 8;  // without the first; the moves to them are the longest
 
@@ -214,6 +216,28 @@ double simulate_start(const PhysicsEngine& engine, const TrackingSetup& setup,
   return most_m;
 }
 
+// Returns the first design with errors that are small enough, or else the one with the smallest.
+std::size_t find_good_start(const TrackingConfig& config, const std::vector<TestCase>& cases,
+                            const std::vector<ArmDesign>& designs) {
+  const ReadStep step(
+      fmt::format("simulating the start of robot '{}'", sanitize(config.robot.name)));
+  const TrackingSetup setup(config.robot, config.task);
+  const std::vector<TargetTable> tables = setup.make_targets(shorten_cases(cases));
+  std::size_t best = 0;
+  double least_error_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    const double error_m = simulate_start(*config.engines.judging, setup, tables, designs[i]);
+    if (error_m < least_error_m) {
+      least_error_m = error_m;
+      best = i;
+    }
+    if (error_m < kGoodStart * kFailureError_m) {
+      break;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 void apply_proposal(const ConfigTable& table, TrackingConfig& config) {
@@ -240,43 +264,26 @@ void apply_proposal(const ConfigTable& table, TrackingConfig& config) {
 
 ArmDesign propose_start(const ConfigTable& variables, const TrackingConfig& config) {
   const std::vector<TestCase> cases = get_cases(config);
-  const auto propose = [&](double bandwidth_rad_per_s) {
-    return propose_design(config.robot, config.task, cases, config.own_effort_limits,
-                          bandwidth_rad_per_s);
+  const auto propose = [&](std::span<const double> bandwidths_rad_per_s) {
+    return propose_designs(config.robot, config.task, cases, config.own_effort_limits,
+                           bandwidths_rad_per_s);
   };
-  const auto record = [&](double bandwidth_rad_per_s) {
-    if (bandwidth_rad_per_s == kStartOfVersion1) {
+  if (const auto given = variables.find(kVariablesStartBandwidth)) {
+    if (*given == kStartOfVersion1) {
       variables.leave_out(kVariablesStartBandwidth);  // so recorded version 1.0
-    } else {
-      variables.settle(kVariablesStartBandwidth, bandwidth_rad_per_s);
     }
-    return propose(bandwidth_rad_per_s);
-  };
-  if (const auto bandwidth = variables.find(kVariablesStartBandwidth)) {
-    return record(*bandwidth);
+    return propose({&*given, 1}).front();
   }
-  if (config.task.drives.has_loops()) {
-    return record(kStartBandwidth_rad_per_s);  // the controllers follow from the drives
+  std::vector<double> tried_rad_per_s = {kStartBandwidth_rad_per_s};
+  // The controllers of drives follow from the drives' own times.
+  if (!config.task.drives.has_loops()) {
+    tried_rad_per_s.insert(tried_rad_per_s.end(), std::begin(kOtherStarts_rad_per_s),
+                           std::end(kOtherStarts_rad_per_s));
   }
-  const ReadStep step(
-      fmt::format("simulating the start of robot '{}'", sanitize(config.robot.name)));
-  const TrackingSetup setup(config.robot, config.task);
-  const std::vector<TargetTable> tables = setup.make_targets(shorten_cases(cases));
-  double best_rad_per_s = kStartBandwidth_rad_per_s;
-  double least_error_m = std::numeric_limits<double>::infinity();
-  for (const double share : kStartTrials) {
-    const double tried_rad_per_s = share * kStartBandwidth_rad_per_s;
-    const double error_m =
-        simulate_start(*config.engines.judging, setup, tables, propose(tried_rad_per_s));
-    if (error_m < least_error_m) {
-      least_error_m = error_m;
-      best_rad_per_s = tried_rad_per_s;
-    }
-    if (error_m < kGoodStart * kFailureError_m) {
-      break;
-    }
-  }
-  return record(best_rad_per_s);
+  const std::vector<ArmDesign> designs = propose(tried_rad_per_s);
+  const std::size_t best = designs.size() == 1 ? 0 : find_good_start(config, cases, designs);
+  variables.settle(kVariablesStartBandwidth, tried_rad_per_s[best]);
+  return designs[best];
 }
 
 }  // namespace armwright

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/dynamics/chain_dynamics.hpp"
+#include "sim/dynamics/joint_effort.hpp"
 
 namespace armwright::articulated {
 namespace {
@@ -47,6 +48,17 @@ double ArmEquations::mass(std::size_t row, std::size_t column) const {
   return numbers_->dynamics
       .mass(static_cast<int>(std::max(row, column)), static_cast<int>(std::min(row, column)))
       .v;
+}
+
+std::vector<double> ArmEquations::calc_holding_efforts(const RobotModel& robot,
+                                                       std::span<const double> q) {
+  set(q, std::vector<double>(q.size(), 0));
+  std::vector<double> efforts;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const Joint& joint = robot.joints[i];
+    efforts.push_back(bias(i) + (joint.plant.offset - calc_counterbalance(joint, q[i])));
+  }
+  return efforts;
 }
 
 }  // namespace armwright::articulated

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "sim/dynamics/chain_model.hpp"
 
@@ -20,6 +21,11 @@ class ArmEquations {
   // links' mass matrix (kg m^2, kg m or kg).
   double bias(std::size_t joint) const;
   double mass(std::size_t row, std::size_t column) const;
+
+  // Returns the efforts with which the motors of `robot`, of which the chain is the model, hold it at
+  // rest: tau = b(q, 0) + f(0) - s(q), with friction f and counterbalance s (joint_plant.hpp).
+  // Friction itself helps to hold; f(0) is its offset. Elastic joints count as rigid.
+  std::vector<double> calc_holding_efforts(const RobotModel& robot, std::span<const double> q);
 
  private:
   struct Numbers;

@@ -9,7 +9,7 @@
 
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
-#include "sim/proposal/holding_effort.hpp"
+#include "sim/proposal/resting_arm.hpp"
 #include "sim/proposal/workspace_proposal.hpp"
 #include "sim/tracking/tracking_setup.hpp"
 
@@ -48,8 +48,7 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
   const std::size_t n = setup.robot().joint_count();
   const std::vector<double> nothing(n, 0);
   Demand demand{nothing, nothing, nothing};
-  HoldingEffort holding(setup.robot(),
-                        setup.task().physics);  // its arm is rigid, as feed-forward's
+  RestingArm resting(setup.robot(), setup.task().physics);
   for (const TargetTable& table : tables) {
     for (int step = 0; step < table.steps; ++step) {
       const auto efforts = table.feed_forward(step);
@@ -58,8 +57,7 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
       }
       if (step % kStepsBetween == 0) {
         check_reading();
-        holding.arm().set_state(table.positions(step), nothing);
-        const Eigen::MatrixXd mass = holding.arm().calc_mass_matrix();
+        const Eigen::MatrixXd mass = resting.calc_mass_matrix(table.positions(step));
         const Eigen::MatrixXd inverse = mass.inverse();
         for (std::size_t i = 0; i < n; ++i) {
           const auto at = static_cast<Eigen::Index>(i);
@@ -70,6 +68,14 @@ Demand calc_demand(const TrackingSetup& setup, const std::vector<TargetTable>& t
     }
   }
   return demand;
+}
+
+// Returns the task without refusals of paths that are too fast: proposals find what limits allow.
+TrackingTask make_lenient(TrackingTask task) {
+  if (task.limits == LimitPolicy::enforce) {
+    task.limits = LimitPolicy::warn;
+  }
+  return task;
 }
 
 std::vector<TargetTable> make_tables(const RobotModel& robot, const TrackingSetup& setup,
@@ -105,9 +111,9 @@ double find_speed_share(const TrackingSetup& setup, const std::vector<TargetTabl
 // Error{bad_data} if they leave too little.
 double find_motion_share(const RobotModel& robot, const TrackingSetup& setup,
                          const std::vector<TargetTable>& tables) {
-  HoldingEffort holding(setup.robot(), setup.task().physics);
+  RestingArm resting(setup.robot(), setup.task().physics);
   double most = 0;
-  HoldingEffort::Hardest hardest;
+  RestingArm::Hardest hardest;
   for (const TargetTable& table : tables) {
     std::span<const double> before = table.start_positions;
     for (int step = 0; step < table.steps; ++step) {
@@ -117,7 +123,7 @@ double find_motion_share(const RobotModel& robot, const TrackingSetup& setup,
       if (step > 0 && std::ranges::equal(before, table.positions(step))) {
         continue;  // the target rests
       }
-      const std::span<const double> held = holding.calc(before);
+      const std::vector<double> held = resting.calc_holding_efforts(before);
       for (std::size_t i = 0; i < table.joints; ++i) {
         const Joint& joint = setup.robot().joints[i];
         const double dry = joint.plant.coulomb + std::max(0.0, joint.plant.stribeck);
@@ -142,9 +148,7 @@ double find_motion_share(const RobotModel& robot, const TrackingSetup& setup,
 double propose_speed(const RobotModel& robot, TrackingTask task,
                      const std::vector<TestCase>& cases) {
   const ReadStep step(fmt::format("proposing a speed for robot '{}'", sanitize(robot.name)));
-  if (task.limits == LimitPolicy::enforce) {
-    task.limits = LimitPolicy::warn;  // this function itself finds the speed that the limits allow
-  }
+  task = make_lenient(task);
   coarsen(task);
   task.feed_forward = FeedForward::inverse_dynamics;
   const double first_speed = task.distance_limit_m / kProposedMove_s;
@@ -171,28 +175,20 @@ double calc_most_coupling(double control_period_s) {
   return kMostSampledDamping / (control_period_s * 2 * kDampingRatio * kStartBandwidth_rad_per_s);
 }
 
-double calc_coupling(const Eigen::MatrixXd& mass) {
-  return mass.diagonal().cwiseProduct(mass.inverse().diagonal()).maxCoeff();
-}
-
 double propose_period_s(const RobotModel& robot, TrackingTask task,
                         const std::vector<TestCase>& cases) {
   const ReadStep step(
       fmt::format("proposing a control period for robot '{}'", sanitize(robot.name)));
-  if (task.limits == LimitPolicy::enforce) {
-    task.limits = LimitPolicy::warn;
-  }
+  task = make_lenient(task);
   coarsen(task);
   task.speed_m_per_s = task.distance_limit_m / kProposedMove_s;
   const TrackingSetup setup(robot, task);
-  HoldingEffort holding(setup.robot(), task.physics);
-  const std::vector<double> rest(robot.joint_count(), 0);
+  RestingArm resting(setup.robot(), task.physics);
   double coupling = 1;
   for (const TargetTable& table : make_tables(robot, setup, cases)) {
     check_reading();
     for (int at = 0; at < table.steps; at += kStepsBetween) {
-      holding.arm().set_state(table.positions(at), rest);
-      coupling = std::max(coupling, calc_coupling(holding.arm().calc_mass_matrix()));
+      coupling = std::max(coupling, resting.calc_coupling(table.positions(at)));
     }
   }
   for (const double period_s : {0.01, 0.005, 0.002}) {
@@ -203,45 +199,44 @@ double propose_period_s(const RobotModel& robot, TrackingTask task,
   return kShortestPeriod_s;
 }
 
-ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
-                         const std::vector<TestCase>& cases, bool own_limits,
-                         double bandwidth_rad_per_s) {
+std::vector<ArmDesign> propose_designs(const RobotModel& robot, TrackingTask task,
+                                       const std::vector<TestCase>& cases, bool own_limits,
+                                       std::span<const double> bandwidths_rad_per_s) {
   const ReadStep step(fmt::format("proposing controllers for robot '{}'", sanitize(robot.name)));
-  if (task.limits == LimitPolicy::enforce) {
-    task.limits = LimitPolicy::warn;
-  }
-  double period_s = task.control_period_s;
+  task = make_lenient(task);
+  const double own_period_s = task.control_period_s;
   if (!cases.front().continuous) {
     coarsen(task);
-  }
-  if (bandwidth_rad_per_s == kStartOfVersion1) {
-    period_s = task.control_period_s;  // its bound was that of the coarse period
-    bandwidth_rad_per_s = kStartBandwidth_rad_per_s;
   }
   task.feed_forward = FeedForward::inverse_dynamics;
   const TrackingSetup setup(robot, task);
   const Demand demand = calc_demand(setup, make_tables(robot, setup, cases));
-  ArmDesign design;
-  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
-    const double w = bandwidth_rad_per_s;
-    const double m = demand.inertia[i];
-    const double d =
-        std::min(2 * kDampingRatio * w * m, kMostSampledDamping / (period_s * demand.mobility[i]));
-    const double p = std::min(w * w * m, d * d / m);
-    JointDrive drive;
-    drive.gains = {p, p * std::sqrt(p / m) / 4, d};
-    const double own = robot.joints[i].effort_limit;
-    const double needed =
-        std::max(kEffortReserve * demand.efforts[i], kLeastAcceleration * demand.inertia[i]);
-    // A tenth of the joint's limit, but at most kMostReserve times the needed effort.
-    const double usual =
-        std::isfinite(own) ? std::min(kUsualEffortShare * own, kMostReserve * needed) : 0;
-    const double limit =
-        own_limits && std::isfinite(own) ? own : std::min(std::max(needed, usual), own);
-    drive.limits = {-limit, limit};
-    design.joints.push_back(drive);
+  std::vector<ArmDesign> designs;
+  for (const double bandwidth_rad_per_s : bandwidths_rad_per_s) {
+    const bool is_first = bandwidth_rad_per_s == kStartOfVersion1;
+    const double w = is_first ? kStartBandwidth_rad_per_s : bandwidth_rad_per_s;
+    const double period_s = is_first ? task.control_period_s : own_period_s;
+    ArmDesign& design = designs.emplace_back();
+    for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+      const double m = demand.inertia[i];
+      const double d = std::min(2 * kDampingRatio * w * m,
+                                kMostSampledDamping / (period_s * demand.mobility[i]));
+      const double p = std::min(w * w * m, d * d / m);
+      JointDrive drive;
+      drive.gains = {p, p * std::sqrt(p / m) / 4, d};
+      const double own = robot.joints[i].effort_limit;
+      const double needed =
+          std::max(kEffortReserve * demand.efforts[i], kLeastAcceleration * demand.inertia[i]);
+      // A tenth of the joint's limit, but at most kMostReserve times the needed effort.
+      const double usual =
+          std::isfinite(own) ? std::min(kUsualEffortShare * own, kMostReserve * needed) : 0;
+      const double limit =
+          own_limits && std::isfinite(own) ? own : std::min(std::max(needed, usual), own);
+      drive.limits = {-limit, limit};
+      design.joints.push_back(drive);
+    }
   }
-  return design;
+  return designs;
 }
 
 }  // namespace armwright

@@ -19,7 +19,7 @@
 // Inverse dynamics and M_ii contain rotor inertia, friction and counterbalances.
 #pragma once
 
-#include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "sim/tracking/design.hpp"
@@ -43,18 +43,16 @@ inline constexpr double kStartOfVersion1 = 0;
 inline constexpr double kProposedStep_s = 0.001;
 inline constexpr double kShortestPeriod_s = 0.001;
 
-// Returns how strongly driving a joint moves the others: the largest M_ii (M^-1)_ii, 1 if it moves
-// none. calc_most_coupling() returns the largest value at which the bound on D reduces no gain.
-double calc_coupling(const Eigen::MatrixXd& mass);
+// Returns the largest coupling (resting_arm.hpp) at which the bound on D reduces no gain.
 double calc_most_coupling(double control_period_s);
 // Returns a control period (s) for a task whose other members are set, except the speed.
 double propose_period_s(const RobotModel& robot, TrackingTask task,
                         const std::vector<TestCase>& cases);
 
-// Returns a design with one PID controller per joint. `own_limits`: whether the robot's own effort
-// limits are proposed as they are. `bandwidth_rad_per_s` may be kStartOfVersion1.
-ArmDesign propose_design(const RobotModel& robot, TrackingTask task,
-                         const std::vector<TestCase>& cases, bool own_limits,
-                         double bandwidth_rad_per_s);
+// Returns one design per bandwidth, each with one PID controller per joint. `own_limits`: whether the
+// robot's own effort limits are proposed as they are. A bandwidth may be kStartOfVersion1.
+std::vector<ArmDesign> propose_designs(const RobotModel& robot, TrackingTask task,
+                                       const std::vector<TestCase>& cases, bool own_limits,
+                                       std::span<const double> bandwidths_rad_per_s);
 
 }  // namespace armwright

@@ -121,7 +121,7 @@ class Search {
         task_(task),
         sphere_(sphere),
         kinematics_(robot, task.tool, {}, true, task.solver),
-        holding_(task.load_kg > 0 ? add_load(robot, task.load_kg, task.load_body) : robot,
+        resting_(task.load_kg > 0 ? add_load(robot, task.load_kg, task.load_body) : robot,
                  task.physics),
         length_m_(calc_arm_length_m(robot)),
         first_m_(robot.joints.front().origin.translation()) {
@@ -139,7 +139,6 @@ class Search {
   using Postures = std::vector<std::vector<double>>;
 
   Postures draw_postures() const;
-  double calc_decoupling(std::span<const double> q);
   double calc_most_radius_m(const Eigen::Vector3d& centre_m) const;
   std::optional<WorkspaceProposal> try_homes(const Postures& homes, double least_m);
 
@@ -147,7 +146,7 @@ class Search {
   const TrackingTask& task_;
   WorkspaceSphere sphere_;
   NumericKinematics kinematics_;
-  HoldingEffort holding_;
+  RestingArm resting_;
   std::optional<FloorClearance> clearance_;
   double length_m_;
   Eigen::Vector3d first_m_;
@@ -199,23 +198,17 @@ bool touches_an_end(const NumericKinematics& kinematics, const RobotModel& robot
   return calc_excursion(kinematics, robot, q) > 1 - kKeepOffEnds;
 }
 
-double calc_coupling_at(HoldingEffort& holding, std::span<const double> q) {
-  const std::vector<double> rest(q.size(), 0);
-  holding.arm().set_state(q, rest);
-  return calc_coupling(holding.arm().calc_mass_matrix());
-}
-
 // Returns whether driving a joint moves the others so much that no proposed control period is short
 // enough, as where two joints of a redundant arm have nearly the same axis.
-bool is_too_coupled(HoldingEffort& holding, std::span<const double> q) {
-  return calc_coupling_at(holding, q) > calc_most_coupling(kShortestPeriod_s);
+bool is_too_coupled(RestingArm& resting, std::span<const double> q) {
+  return resting.calc_coupling(q) > calc_most_coupling(kShortestPeriod_s);
 }
 
 // Returns whether the arm can follow straight moves through the points of the cases; checks
 // coarsely spaced points.
 bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot,
-                const FloorClearance* clearance, HoldingEffort& holding,
-                const WorkspaceSphere& sphere, const Eigen::Matrix3d& turn, std::vector<double> q) {
+                const FloorClearance* clearance, RestingArm& resting, const WorkspaceSphere& sphere,
+                const Eigen::Matrix3d& turn, std::vector<double> q) {
   const std::size_t n = q.size();
   if (!kinematics.find({sphere.centre_m, turn}, q)) {
     return false;
@@ -237,7 +230,7 @@ bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot,
             its.points_m[k - 1] + (static_cast<double>(step) / steps) * way_m;
         if (!kinematics.follow({at_m, turn}, wish, q) || touches_an_end(kinematics, robot, q) ||
             (clearance != nullptr && clearance->find_lowest(q).excess_m > 0) ||
-            is_too_coupled(holding, q) || kinematics.calc_dexterity(q) < kSafeDexterity) {
+            is_too_coupled(resting, q) || kinematics.calc_dexterity(q) < kSafeDexterity) {
           return false;
         }
       }
@@ -248,7 +241,7 @@ bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot,
 
 // Returns the same, checked with the target tables that simulations use.
 bool has_good_tables(const RobotModel& robot, TrackingTask task, const WorkspaceProposal& place,
-                     HoldingEffort& holding) {
+                     RestingArm& resting) {
   coarsen(task);
   task.limits = LimitPolicy::warn;
   task.home = place.home;
@@ -266,7 +259,7 @@ bool has_good_tables(const RobotModel& robot, TrackingTask task, const Workspace
       const std::span<const double> q = table.positions(step);
       if (touches_an_end(*kinematics, robot, q) ||
           (step % kStepsBetweenWeights == 0 &&
-           (holding.find_hardest(q).share > kMostHeld || is_too_coupled(holding, q)))) {
+           (resting.find_hardest(q).share > kMostHeld || is_too_coupled(resting, q)))) {
         return false;
       }
     }
@@ -293,12 +286,6 @@ Search::Postures Search::draw_postures() const {
   return postures;
 }
 
-// Returns 1 if each joint can be damped as if the others stood still, and less the more the others
-// move when it is driven.
-double Search::calc_decoupling(std::span<const double> q) {
-  return std::min(1.0, calc_most_coupling(task_.control_period_s) / calc_coupling_at(holding_, q));
-}
-
 double Search::calc_most_radius_m(const Eigen::Vector3d& centre_m) const {
   const Eigen::Vector3d way_m = centre_m - first_m_;
   double most_m = std::min(kLargestRadius * length_m_, way_m.norm() / kKeepOff);
@@ -321,7 +308,7 @@ std::optional<WorkspaceProposal> Search::try_homes(const Postures& homes, double
          radius_m *= kRadiusStep) {
       check_reading();
       set_radius(sphere, radius_m);
-      if (can_follow(from_home, robot_, clearance_ ? &*clearance_ : nullptr, holding_, sphere,
+      if (can_follow(from_home, robot_, clearance_ ? &*clearance_ : nullptr, resting_, sphere,
                      centre.turn, home)) {
         best = WorkspaceProposal{.home = home,
                                  .centre = centre,
@@ -345,10 +332,13 @@ std::optional<WorkspaceProposal> Search::find(bool points_down) {
   }
   // The postures in front of the arm and the others, each with its ease.
   std::vector<std::pair<double, std::vector<double>>> groups[2];
+  const double most_coupling = calc_most_coupling(task_.control_period_s);
   for (std::vector<double>& q : postures) {
-    const double ease = calc_ease(kinematics_, robot_, q) * calc_decoupling(q);
+    // Less the more the other joints move when one is driven, if that limits its damping.
+    const double ease = calc_ease(kinematics_, robot_, q) *
+                        std::min(1.0, most_coupling / resting_.calc_coupling(q));
     if (ease <= 0 || (clearance_ && clearance_->find_lowest(q).excess_m > 0) ||
-        holding_.find_hardest(q).share > kMostHeldAtHome) {
+        resting_.find_hardest(q).share > kMostHeldAtHome) {
       continue;
     }
     const Eigen::Vector2d way_m = (kinematics_.calc_pose(q).position_m - first_m_).head<2>();
@@ -371,7 +361,7 @@ std::optional<WorkspaceProposal> Search::find(bool points_down) {
     }
   }
   while (best && best->sphere.radius_m >= smallest_m) {
-    const bool is_good = has_good_tables(robot_, task_, *best, holding_);
+    const bool is_good = has_good_tables(robot_, task_, *best, resting_);
     // A good sphere is made smaller once more, as a margin for cases that were not checked.
     set_radius(best->sphere, kRadiusStep * best->sphere.radius_m);
     if (is_good) {
@@ -383,11 +373,11 @@ std::optional<WorkspaceProposal> Search::find(bool points_down) {
 }
 
 void Search::check_holding() {
-  HoldingEffort::Hardest easiest;
+  RestingArm::Hardest easiest;
   easiest.share = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& q : draw_postures()) {
     if (!clearance_ || clearance_->find_lowest(q).excess_m <= 0) {
-      const HoldingEffort::Hardest hardest = holding_.find_hardest(q);
+      const RestingArm::Hardest hardest = resting_.find_hardest(q);
       easiest = hardest.share < easiest.share ? hardest : easiest;
     }
   }
@@ -403,18 +393,17 @@ void refuse_proposal(const RobotModel& robot, const std::string& what) {
   throw Error(ErrorKind::bad_data, fmt::format("robot '{}': {}", sanitize(robot.name), what));
 }
 
-void refuse_to_hold(const RobotModel& robot, const HoldingEffort::Hardest& hardest,
+void refuse_to_hold(const RobotModel& robot, const RestingArm::Hardest& hardest,
                     const std::string& where) {
   const Joint& joint = robot.joints[hardest.joint];
   refuse_proposal(
-      robot, fmt::format(
-                 "joint {} ('{}') needs {:.4g} {} to hold the arm {}, its effort limit is {:.4g}; "
-                 "motors that gravity leaves less than {:.0f} % of their effort cannot control the "
-                 "arm: correct the limit or the masses in the robot's file, state springs and "
-                 "counterweights (robot.plant), carry less, or set another workspace",
-                 hardest.joint + 1, sanitize(joint.name), hardest.effort,
-                 joint.kind == JointKind::revolute ? "N m" : "N", where, joint.effort_limit,
-                 100 * (1 - kMostHeld)));
+      robot,
+      fmt::format("joint {} ('{}') needs {:.4g} {} to hold the arm {}, its effort limit is {:.4g}; "
+                  "a motor needs some of its effort to move the arm, too: correct the limit or the "
+                  "masses in the robot's file, state springs and "
+                  "counterweights (robot.plant), carry less, or set another workspace",
+                  hardest.joint + 1, sanitize(joint.name), hardest.effort,
+                  joint.kind == JointKind::revolute ? "N m" : "N", where, joint.effort_limit));
 }
 
 void coarsen(TrackingTask& task) {

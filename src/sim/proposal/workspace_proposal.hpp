@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/proposal/holding_effort.hpp"
+#include "sim/proposal/resting_arm.hpp"
 #include "sim/tracking/task.hpp"
 #include "sim/tracking/test_case.hpp"
 
@@ -39,7 +39,7 @@ inline constexpr double kProposedMove_s = 1;
 [[noreturn]] void refuse_proposal(const RobotModel& robot, const std::string& what);
 // Does so for a joint that needs too much of its effort limit to hold the arm. `where` follows "to
 // hold the arm".
-[[noreturn]] void refuse_to_hold(const RobotModel& robot, const HoldingEffort::Hardest& hardest,
+[[noreturn]] void refuse_to_hold(const RobotModel& robot, const RestingArm::Hardest& hardest,
                                  const std::string& where);
 
 // Returns the most complete orientation that the robot's joints can control.

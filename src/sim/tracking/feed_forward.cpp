@@ -34,13 +34,7 @@ double calc_plant_effort(const Joint& joint, double q, double rate, double accel
 }  // namespace
 
 std::vector<double> TrackingSetup::calc_holding_efforts(std::span<const double> q) const {
-  articulated::ArmEquations equations(*chain_);
-  equations.set(q, std::vector<double>(q.size(), 0));
-  std::vector<double> efforts;
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    efforts.push_back(equations.bias(i) + calc_plant_effort(robot_.joints[i], q[i], 0, 0));
-  }
-  return efforts;
+  return articulated::ArmEquations(*chain_).calc_holding_efforts(robot_, q);
 }
 
 void TrackingSetup::fill_efforts(TargetTable& table) const {

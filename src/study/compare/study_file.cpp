@@ -132,14 +132,15 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
 // it proposed, which the problem's record in the study's folder has.
 std::vector<std::vector<std::string>> list_old_arms(const std::filesystem::path& folder,
                                                     const std::string& label) {
-  std::vector<std::string> arm = {kNoDynamics, kNoPlant, kNoRepair, kEmptyStart};
+  std::vector<std::string> arm;
+  std::ranges::transform(kFirstArm, std::back_inserter(arm), &FirstSetting::setting);
   const auto file = folder / make_problem_name(label);
   if (path_exists(file)) {
     const std::string text = read_file(file, kPlanLimit_bytes);
     check_json_depth(text, file.string());
     const auto recorded = nlohmann::json::parse(text, nullptr, false);
     if (recorded.is_object()) {
-      std::ranges::move(list_first_proposal(recorded), std::back_inserter(arm));
+      std::ranges::move(list_proposals(recorded), std::back_inserter(arm));
     }
   }
   std::vector<std::string> scalar = arm;

@@ -88,21 +88,12 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
       problem.loaded.tracking()->setup().task().solver == NumericSolver::scalar) {
     settings.emplace_back(kScalarSolver);  // likewise
   }
-  if (problem.loaded.tracking() != nullptr && !resolved["robot"].contains("dynamics")) {
-    settings.emplace_back(kNoDynamics);  // likewise
+  for (const FirstSetting& first : kFirstArm) {
+    if (problem.loaded.tracking() != nullptr && !resolved.contains(json::json_pointer(first.key))) {
+      settings.emplace_back(first.setting);
+    }
   }
-  if (problem.loaded.tracking() != nullptr && !resolved["robot"].contains("plant")) {
-    settings.emplace_back(kNoPlant);
-  }
-  if (problem.loaded.tracking() != nullptr && !resolved["robot"].contains("repair")) {
-    settings.emplace_back(kNoRepair);
-  }
-  const auto control = resolved.find("control");
-  if (problem.loaded.tracking() != nullptr &&
-      (control == resolved.end() || !control->contains("start"))) {
-    settings.emplace_back(kEmptyStart);
-  }
-  std::ranges::move(list_first_proposal(resolved), std::back_inserter(settings));
+  std::ranges::move(list_proposals(resolved), std::back_inserter(settings));
   LoadedProblem loaded = load_for_method(problem, optimizer, settings, programs);
   if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {
     throw Error(ErrorKind::usage,

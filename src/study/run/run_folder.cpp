@@ -317,13 +317,11 @@ std::vector<std::string> find_old_settings(const std::filesystem::path& folder,
   const bool is_numeric = !arm->setup().has_closed_form();
   add(is_numeric && arm->setup().task().solver == NumericSolver::lanes && lacks("/task/solver"),
       kScalarSolver);
-  add(arm->config().own_effort_limits && lacks("/robot/dynamics"), kNoDynamics);
-  add(arm->config().own_effort_limits && lacks("/robot/plant"), kNoPlant);
-  add(find(json::parse(problem.resolved_json), "/robot/repair") == true && lacks("/robot/repair"),
-      kNoRepair);
-  add(arm->config().task.control_start == ControlStart::gravity && lacks("/control/start"),
-      kEmptyStart);
-  for (const std::string& setting : list_first_proposal(recorded)) {
+  const json now = json::parse(problem.resolved_json);
+  for (const FirstSetting& first : kFirstArm) {
+    add(lacks(first.key) && !find(now, first.key).is_null(), first.setting);
+  }
+  for (const std::string& setting : list_proposals(recorded)) {
     add(true, setting);
   }
   return old;

@@ -75,19 +75,24 @@ void cover_run(const Folder& folder, bool has_ended);
 // damaged, and Error{io}.
 bool has_first_selection(const std::filesystem::path& folder);
 
-// The settings with which a problem is what it was in version 1.0: the plain form of a function, the
-// solver of the numeric inverse kinematics, ideal joints of a file that is read strictly, and
-// controllers that start empty.
+// The settings with which a problem is what it was in version 1.0: the plain form of a function, and
+// the solver of the numeric inverse kinematics.
 inline constexpr const char* kPlainForm = "function.instance=0";
 inline constexpr const char* kScalarSolver = "task.solver=scalar";
-inline constexpr const char* kNoDynamics = "robot.dynamics=false";
-inline constexpr const char* kNoPlant = "robot.plant=\"\"";
-inline constexpr const char* kNoRepair = "robot.repair=false";
-inline constexpr const char* kEmptyStart = "control.start=empty";
+// Likewise of any arm: ideal joints of a file that is read strictly, and controllers that start empty.
+// A recorded configuration of version 1.0 lacks the keys.
+struct FirstSetting {
+  const char* key;      // a JSON pointer
+  const char* setting;  // what the key's absence means
+};
+inline constexpr FirstSetting kFirstArm[] = {{"/robot/dynamics", "robot.dynamics=false"},
+                                             {"/robot/plant", "robot.plant=\"\""},
+                                             {"/robot/repair", "robot.repair=false"},
+                                             {"/control/start", "control.start=empty"}};
 
 // Returns the settings that the run in the folder needs in addition to `settings`, with which
 // `problem` was loaded: those above that make the problem what it was in version 1.0, and what it
-// proposed then (list_first_proposal()). The list is empty unless version 1.0 began the run, and has
+// proposed then (list_proposals()). The list is empty unless version 1.0 began the run, and has
 // no key that `settings` name. Throws Error{bad_data} if the manifest is damaged, and Error{io}.
 std::vector<std::string> find_old_settings(const std::filesystem::path& folder,
                                            const LoadedProblem& problem,
