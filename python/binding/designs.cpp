@@ -141,7 +141,7 @@ py::tuple evaluate_design(const ProblemHandle& handle, const py::object& design_
   const bool is_named = py::isinstance<py::str>(set);
   const ChosenCases cases{is_named ? tracking.get_set(set.cast<std::string>())
                                    : read_cases(set.cast<std::vector<Numbers>>()),
-                          count};
+                          count, true};
   std::optional<DesignEvaluation> evaluation;
   Host host(listener);
   host.run([&] {

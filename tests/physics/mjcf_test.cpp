@@ -253,15 +253,15 @@ TEST(Mjcf, HoldsOtherJointsAndSaysSo) {
       arm.notes,
       ElementsAre(
           "no actuator limits the effort of 'three': they have no limit",
-          "joint 'ball' is not between 'world' and 'hand': held at the pose of the file, "
+          "joint 'ball' is not between 'world' and 'pinch': held at the pose of the file, "
           "its 0.2681 kg are part of the fixed base",
-          "joint 'left' is not between 'world' and 'hand': held at 0.01 m, its 0.09 kg are "
+          "joint 'left' is not between 'world' and 'pinch': held at 0.01 m, its 0.09 kg are "
           "part of link 'hand'",
-          "joint 'nail' is not between 'world' and 'hand': held at 0.2 rad, its 0.02 kg are "
+          "joint 'nail' is not between 'world' and 'pinch': held at 0.2 rad, its 0.02 kg are "
           "part of link 'hand'",
-          "joint 'nail_twist' is not between 'world' and 'hand': held at 0.1 rad, its 0.02 "
+          "joint 'nail_twist' is not between 'world' and 'pinch': held at 0.1 rad, its 0.02 "
           "kg are part of link 'hand'",
-          "joint 'right' is not between 'world' and 'hand': held at 0.002 m, its 0.11 kg "
+          "joint 'right' is not between 'world' and 'pinch': held at 0.002 m, its 0.11 kg "
           "are part of link 'hand'"));
 }
 

@@ -258,6 +258,7 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
   const TrackingProblem& tracking = require_tracking(problem);
   tracking.check_design(design.design);
   ChosenCases cases = choose_cases(problem, options.cases);
+  cases.motion = true;
   std::uint64_t traced = 0;
   if (!options.trajectory.empty()) {
     const auto most = static_cast<std::int64_t>(cases.set.size().value_or(1'000'000'000)) - 1;

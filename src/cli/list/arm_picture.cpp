@@ -50,7 +50,9 @@ char choose_stroke(const Spot& from, const Spot& to) {
 }
 
 char name_joint(std::size_t number) {
-  return static_cast<char>(number < 9 ? '1' + number : 'a' + (number - 9));
+  return number < 9    ? static_cast<char>('1' + number)
+         : number < 35 ? static_cast<char>('a' + (number - 9))
+                       : '+';
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace armwright {
 
 // Returns the arm's side view at the joint positions `q`: its joints as numbers from 1 (letters from
-// the tenth), its base as # and its tip as *. The picture's plane is the vertical one in which the
+// the tenth, + from the 36th), its base as # and its tip as *. The picture's plane is the vertical one in which the
 // tip, or else the farthest joint, lies. Each line ends with a line break. At most 16 lines of 56
 // characters.
 std::string draw_arm(const RobotModel& robot, std::span<const double> q);

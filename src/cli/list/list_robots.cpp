@@ -140,12 +140,19 @@ std::string write_repaired(const ListedRobot& listed, const std::string& target)
                 fmt::format("--write {}: this is the file that is read; name another one",
                             sanitize(target)));
   }
-  std::string comment = "Repaired by armwright:";
+  const std::string text = read_file(listed.file, kUrdfLimit_bytes);
+  if (is_mjcf(text)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("--write {}: {} is MJCF, which is never repaired; leave --write out",
+                            sanitize(target), sanitize(listed.file.string())));
+  }
+  std::string comment =
+      listed.model.reading.repairs.empty() ? "Checked by armwright." : "Repaired by armwright:";
   for (const UrdfRepair& repair : listed.model.reading.repairs) {
     comment += "\n  " + repair.what;
   }
-  write_output(target, apply_repairs(read_file(listed.file, kUrdfLimit_bytes), listed.file.string(),
-                                     listed.model.reading.repairs, comment));
+  write_output(target,
+               apply_repairs(text, listed.file.string(), listed.model.reading.repairs, comment));
   return fmt::format(
       "  {} is the same robot without the need of repairs; its meshes are looked for "
       "from its own folder\n",

@@ -190,9 +190,7 @@ class GainsReader {
     const ControllerParameters controller = choose(split_controllers(scalars));
     check_interface(controller);
     ArmDesign design;
-    design.controller = drives_.interface == ControlInterface::effort     ? "pid"
-                        : drives_.interface == ControlInterface::velocity ? "pid_velocity"
-                                                                          : "pid_position";
+    design.controller = get_plain_controller(drives_.interface).name;
     for (const Joint& joint : robot_.joints) {
       design.joints.push_back(read_joint(controller, joint));
     }

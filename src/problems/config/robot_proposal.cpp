@@ -167,7 +167,7 @@ void propose_pace(const ConfigTable& table, TrackingConfig& config) {
         config.path ? calc_longest_move_m(cases) : 2 * config.workspace.radius_m;
     task_table.settle(kTaskDistanceLimit, task.distance_limit_m);
   }
-  if (!control.has(kControlPeriod) && !(config.path && config.path->continuous)) {
+  if (!control.has(kControlPeriod) && !config.never_rests()) {
     task.control_period_s = propose_period_s(config.robot, task, cases);
     control.settle(kControlPeriod, task.control_period_s);
     if (!physics.has(kPhysicsSubsteps)) {
@@ -176,7 +176,7 @@ void propose_pace(const ConfigTable& table, TrackingConfig& config) {
       physics.settle(kPhysicsSubsteps, task.physics.substeps);
     }
   }
-  if (!task_table.has(kTaskSpeed) && !(config.path && config.path->continuous)) {
+  if (!task_table.has(kTaskSpeed) && !config.never_rests()) {
     task.speed_m_per_s = propose_speed(config.robot, task, cases);
     task_table.settle(kTaskSpeed, task.speed_m_per_s);
   }

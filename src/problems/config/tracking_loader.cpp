@@ -289,8 +289,7 @@ void settle_reading(const ConfigTable& table, const RobotReading& reading) {
   if (!table.get(kRobotRepair)) {
     table.leave_out(kRobotRepair);
   }
-  const bool from_shapes = reading.density_kg_per_m3 > 0 && !table.has(kRobotDensity);
-  if (from_shapes) {
+  if (reading.density_kg_per_m3 > 0 && table.get(kRobotDensity) == 0) {
     table.settle(kRobotDensity, reading.density_kg_per_m3);
   }
   if (reading.assumed_links.empty() || reading.density_kg_per_m3 > 0) {

@@ -91,7 +91,7 @@ std::string choose_controller(const ConfigTable& control, const TrackingConfig& 
   if (interface == ControlInterface::effort || find_controller(own).interface == interface) {
     return own;
   }
-  return std::ranges::find(controller_table(), interface, &ControllerRow::interface)->name;
+  return get_plain_controller(interface).name;
 }
 
 // Converts the start to the controller of the problem, and asks for the feed-forward that the

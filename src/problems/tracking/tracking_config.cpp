@@ -72,7 +72,7 @@ bool has_duration_metric(const TrackingConfig& config) {
 
 std::vector<double> list_moves_m(const TrackingConfig& config) {
   std::vector<double> moves_m;
-  if (config.path && config.path->continuous) {
+  if (config.never_rests()) {
     return moves_m;
   }
   if (config.path) {
@@ -90,7 +90,7 @@ std::vector<double> list_moves_m(const TrackingConfig& config) {
 
 double calc_case_duration_s(const TrackingConfig& config, const TrackingTask& task) {
   double duration_s = 0;
-  if (config.path && config.path->continuous) {
+  if (config.never_rests()) {
     return static_cast<double>(config.path->points_m.size() - 1) * task.control_period_s;
   }
   for (const double move_m : list_moves_m(config)) {

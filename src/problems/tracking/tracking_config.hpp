@@ -68,6 +68,9 @@ struct TrackingConfig {
   double speed_bounds_factor = 2;
   double torque_per_mass_n_m_per_kg = 0;  // of the motors; 0: motors have no mass
   std::vector<Requirement> requirements;
+
+  // Returns whether the target never rests: on a path of the user's own without stops.
+  bool never_rests() const { return path && path->continuous; }
 };
 
 // Returns the number of a design that a parameter stands for. For the speed, the design must have a

@@ -73,10 +73,9 @@ std::string describe_workspace(const TrackingConfig& config) {
 // A path that is sampled has its speeds in its samples.
 std::string describe_target(const TrackingConfig& config, const TrackingTask& task) {
   const std::string signal = signal_names()[static_cast<std::size_t>(task.signal)];
-  return config.path && config.path->continuous
-             ? "moves along its samples"
-             : fmt::format("{} moves at {:.4g} m/s, below {:.4g} m slower", signal,
-                           task.speed_m_per_s, task.distance_limit_m);
+  return config.never_rests() ? "moves along its samples"
+                              : fmt::format("{} moves at {:.4g} m/s, below {:.4g} m slower", signal,
+                                            task.speed_m_per_s, task.distance_limit_m);
 }
 
 std::string make_task_facts(const FinishedArm& arm) {
@@ -141,6 +140,9 @@ std::string format_metric(const RunResult& result, const Evaluation& evaluation,
 
 // Returns why the arm sags when its controllers are enabled and what to do about it, or what holds it.
 std::string explain_start(const FinishedArm& arm) {
+  if (arm.config().task.drives.has_loops()) {
+    return "The drives hold the arm from the first period on.";
+  }
   const FeedForward ahead = find_controller(arm.design.controller).feed_forward;
   if (ahead != FeedForward::none) {
     return "The controllers add the efforts that hold the arm from the first period on.";
@@ -150,8 +152,8 @@ std::string explain_start(const FinishedArm& arm) {
            "(control.start); one that starts empty sags further when it is enabled.";
   }
   return "It is the sag when the controllers are enabled: their integrals start empty, so gravity "
-         "pulls the arm until they have filled. control.start = \"gravity\" or pid_gravity hold "
-         "it.";
+         "pulls the arm until they have filled. control.start = \"gravity\" holds it, if the "
+         "controller has an integral; the controller pid_gravity always does.";
 }
 
 std::string list_totals(const EffortTotals& efforts) {
@@ -188,7 +190,7 @@ std::string describe_motion(const FinishedArm& arm) {
 
 std::string make_results(const FinishedArm& arm) {
   const RunResult& result = arm.result();
-  const bool continuous = arm.config().path && arm.config().path->continuous;
+  const bool continuous = arm.config().never_rests();
   const std::vector<std::string> heads = {continuous ? "Errors in mm" : "Errors at rest, mm",
                                           "cases",
                                           "mean",

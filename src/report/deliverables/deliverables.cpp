@@ -47,7 +47,7 @@ void refuse_study(const fs::path& folder, std::string_view format) {
 std::vector<std::string> describe_origin(const FinishedArm& arm) {
   const TrackingConfig& config = arm.config();
   const ErrorSummary& test = arm.result().test_summary;
-  const bool rests = !config.path || !config.path->continuous;
+  const bool rests = !config.never_rests();
   std::vector<std::string> lines = {
       fmt::format("Written by armwright {} for the robot {}: {}, a run of {}.", get_version(),
                   sanitize(config.robot.name), arm.describe(), sanitize(arm.run.started)),

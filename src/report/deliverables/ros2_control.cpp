@@ -50,11 +50,10 @@ long calc_update_rate_hz(double period_s) {
 constexpr const char* kTrajectory = "joint_trajectory_controller";
 constexpr const char* kPid = "pid_controller";
 
-// Returns the limits of what a joint's controller commands. A position has none.
+// Returns the limits of what a joint's controller commands.
 EffortLimits get_command_limits(const Joint& joint, const ArmDesign& design, std::size_t i) {
-  return find_controller(design.controller).interface == ControlInterface::effort
-             ? design.joints[i].limits
-             : EffortLimits{-joint.speed_limit, joint.speed_limit};
+  const ArmDrives drives{.interface = find_controller(design.controller).interface};
+  return drives.get_command_limits(joint, design.joints[i].limits);
 }
 
 void check_controller(const Ros2Distribution& distribution, const RobotModel& robot,

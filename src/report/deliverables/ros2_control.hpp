@@ -30,7 +30,7 @@
 
 namespace armwright {
 
-// How pid_controller is told to add the position itself: by no parameter, by a parameter of its own
+// The way in which a file makes pid_controller add the position itself: by no parameter, by a parameter of its own
 // beside the gain, or by the gain alone.
 enum class FeedForwardSwitch { none, parameter, gain };
 

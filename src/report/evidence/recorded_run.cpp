@@ -95,6 +95,7 @@ std::map<std::string, json> list_settings(const json& resolved) {
   if (resolved.contains("robot")) {  // likewise these, which version 1.0 did not have
     settings.try_emplace("robot.dynamics", false);
     settings.try_emplace("robot.plant", "");
+    settings.try_emplace("robot.repair", false);
     settings.try_emplace("control.start", "empty");
   }
   if (const auto start = settings.find("variables.start");

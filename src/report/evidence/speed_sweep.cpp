@@ -66,11 +66,6 @@ SweepRequest make_sweep_request(const RecordedRun& run,
   return request;
 }
 
-bool has_own_times(const RecordedRun& run) {
-  const auto& path = run.tracking()->config().path;
-  return path && path->continuous;
-}
-
 // Returns Sweep of web/src/data.ts over task.speed_m_per_s: every design at every speed on the same
 // cases, by the judging engine. The nominal speed is the problem's own.
 json simulate_speeds(PageSimulator& simulator, const TrackingProblem& problem,
@@ -112,7 +107,7 @@ json simulate_speeds(PageSimulator& simulator, const TrackingProblem& problem,
 
 std::uint64_t count_sweep_cases(const RecordedRun& run, const std::vector<ShownDesign>& designs) {
   const auto swept = choose_swept(designs);
-  if (has_own_times(run)) {
+  if (run.tracking()->config().never_rests()) {
     return 0;
   }
   const SweepRequest request = make_sweep_request(run, swept);
@@ -121,7 +116,7 @@ std::uint64_t count_sweep_cases(const RecordedRun& run, const std::vector<ShownD
 
 json make_speed_sweep(const RecordedRun& run, const std::vector<ShownDesign>& designs,
                       PageSimulator& simulator, std::vector<std::string>& notes) {
-  if (has_own_times(run)) {
+  if (run.tracking()->config().never_rests()) {
     notes.push_back("The path has its own times, so there is no sweep over the speed.");
     return nullptr;
   }

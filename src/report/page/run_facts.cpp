@@ -112,7 +112,7 @@ EffortTotals find_efforts(const RecordedRun& run) {
 // all versions can be compared.
 std::string name_error(const RecordedRun& run) {
   const TrackingProblem* const arm = run.tracking();
-  const bool never_rests = arm != nullptr && arm->config().path && arm->config().path->continuous;
+  const bool never_rests = arm != nullptr && arm->config().never_rests();
   return never_rests ? "mean error" : "mean error at rest";
 }
 

@@ -219,6 +219,10 @@ std::vector<std::string> controller_names() {
   return names;
 }
 
+const ControllerRow& get_plain_controller(ControlInterface interface) {
+  return *std::ranges::find(controller_table(), interface, &ControllerRow::interface);
+}
+
 const ControllerRow& find_controller(std::string_view name) {
   for (const ControllerRow& row : controller_table()) {
     if (row.name == name) {

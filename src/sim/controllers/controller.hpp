@@ -67,6 +67,8 @@ struct ControllerRow {
 const std::vector<ControllerRow>& controller_table();
 std::vector<std::string> controller_names();
 const ControllerRow& find_controller(std::string_view name);  // Error{usage} if there is none
+// Returns the first controller of the table with that interface, which is its plain PID.
+const ControllerRow& get_plain_controller(ControlInterface interface);
 
 // Converts the unit of a revolute joint to that of a joint of the given kind: "N m/rad" stays or
 // becomes "N/m".

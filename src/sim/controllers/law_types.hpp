@@ -10,7 +10,7 @@ namespace armwright {
 // nominal arm of the problem (sim/tracking/feed_forward.cpp).
 enum class FeedForward : std::uint8_t { none, gravity, inverse_dynamics };
 
-// What a controller commands: the effort of the motor, or the speed or position of a drive that has
+// The quantity that a controller commands: the effort of the motor, or the speed or position of a drive that has
 // an inner loop (sim/tracking/arm_drives.hpp).
 enum class ControlInterface : std::uint8_t { effort, velocity, position };
 

@@ -17,7 +17,7 @@ class ArmEquations {
 
   // Computes the equations for joint positions (rad or m) and rates (rad/s or m/s).
   void set(std::span<const double> q, std::span<const double> rate);
-  // Return the effort (N m or N) that gravity and the rates ask of a joint, and an element of the
+  // Return the effort (N m or N) that gravity and the rates need at a joint, and an element of the
   // links' mass matrix (kg m^2, kg m or kg).
   double bias(std::size_t joint) const;
   double mass(std::size_t row, std::size_t column) const;

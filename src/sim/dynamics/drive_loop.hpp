@@ -41,8 +41,8 @@ enum DriveField : int {
   kRateBefore,    // v_n
   kMotorDamping,  // w m, or 0 in a clamped substep
   kMotorEffort,   // u_0 or the limit, and u after the substep
-  // Of the present control period: the largest |u|, the sum of u^2, the count of clamped substeps,
-  // and the positive work.
+  // The measures of the present control period: the largest |u|, the sum of u^2, the count of
+  // clamped substeps, and the positive work.
   kPeriodPeak,
   kPeriodSquares,
   kPeriodClamped,

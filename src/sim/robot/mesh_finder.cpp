@@ -136,29 +136,31 @@ std::optional<fs::path> MeshFinder::find(const std::string& name) {
 std::optional<fs::path> MeshFinder::find_in_package(const fs::path& wanted) {
   const std::string package = wanted.begin()->string();
   const fs::path rest = wanted.lexically_relative(package);
-  for (const fs::path& folder : list_package_folders(package)) {
-    if (is_file(folder / rest)) {
-      return folder / rest;
+  std::vector<fs::path> near;  // folders that need no search
+  if (const auto given = packages_.find(package); given != packages_.end()) {
+    near.push_back(given->second);
+  }
+  for (const fs::path& folder : folders_) {
+    near.push_back(folder / package);
+    if (folder.filename() == package) {
+      near.push_back(folder);
     }
   }
-  return std::nullopt;
+  const auto find_in = [&](const std::vector<fs::path>& places) -> std::optional<fs::path> {
+    const auto found = std::ranges::find_if(
+        places, [&](const fs::path& folder) { return is_file(folder / rest); });
+    return found == places.end() ? std::nullopt : std::optional(*found / rest);
+  };
+  const auto found = find_in(near);
+  return found ? found : find_in(search_package(package));
 }
 
-const std::vector<fs::path>& MeshFinder::list_package_folders(const std::string& package) {
+const std::vector<fs::path>& MeshFinder::search_package(const std::string& package) {
   const auto known = found_.find(package);
   if (known != found_.end()) {
     return known->second;
   }
   std::vector<fs::path> found;
-  if (const auto given = packages_.find(package); given != packages_.end()) {
-    found.push_back(given->second);
-  }
-  for (const fs::path& folder : folders_) {
-    found.push_back(folder / package);
-    if (folder.filename() == package) {
-      found.push_back(folder);
-    }
-  }
   std::size_t left = kMostFolders;
   for (std::size_t level = 0; level < folders_.size(); ++level) {
     search(folders_[level], package, 0, left, found);

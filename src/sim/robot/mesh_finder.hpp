@@ -38,7 +38,8 @@ class MeshFinder {
 
  private:
   std::optional<std::filesystem::path> find_in_package(const std::filesystem::path& wanted);
-  const std::vector<std::filesystem::path>& list_package_folders(const std::string& package);
+  // Returns the folders of a package that only a search finds. Searches once per package.
+  const std::vector<std::filesystem::path>& search_package(const std::string& package);
 
   std::vector<std::filesystem::path> folders_;  // the description's and those above it
   std::map<std::string, std::filesystem::path> packages_;

@@ -81,13 +81,12 @@ class ChainChooser {
     };
     replace_site(by_body.base);
     chain_.site = replace_site(by_body.tip);
-    const UrdfChain chosen = choose_chain(links, joints, by_body, mjcf_.name);
-    chain_.base = find_body(chosen.base);
-    chain_.tip = find_body(chosen.tip);
-    chain_.reading.base = chosen.base;
-    chain_.reading.tip = chain_.site < 0 ? chosen.tip : options_.tip;
-    chain_.reading.ends = chosen.ends;
-    chain_.reading.is_tip_proposed = chosen.is_tip_proposed;
+    chain_.choice = choose_chain(links, joints, by_body, mjcf_.name);
+    chain_.base = find_body(chain_.choice.base);
+    chain_.tip = find_body(chain_.choice.tip);
+    if (chain_.site >= 0) {
+      chain_.choice.tip = options_.tip;
+    }
   }
 
   int find_body(const std::string& name) const {

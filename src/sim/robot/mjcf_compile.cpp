@@ -155,7 +155,8 @@ CompiledMjcf compile_prepared(MjcfText text, const std::string& name) {
 }
 
 std::map<std::string, std::filesystem::path> load_mesh_masses(
-    CompiledMjcf& mjcf, const std::function<bool(int)>& moves) {
+    CompiledMjcf& mjcf, const std::map<std::string, std::filesystem::path>& packages,
+    const std::function<bool(int)>& moves) {
   const MjcfText& text = mjcf.text;
   std::map<std::string, std::filesystem::path> files;
   if (text.meshes.empty()) {
@@ -167,7 +168,7 @@ std::map<std::string, std::filesystem::path> load_mesh_masses(
   if (bodies.empty()) {
     return files;
   }
-  const std::filesystem::path folder = std::filesystem::path(mjcf.name).parent_path();
+  MeshFinder finder(std::filesystem::path(mjcf.name).parent_path(), packages);
   const std::set<int> needed = find_meshes(*mjcf.model, bodies);
   std::string xml = text.xml;
   MeshContents some, others;  // stand-ins of two sizes for what is missing
@@ -180,7 +181,7 @@ std::map<std::string, std::filesystem::path> load_mesh_masses(
     if (!needed.contains(mj_name2id(mjcf.model.get(), mjOBJ_MESH, mesh_name.c_str()))) {
       continue;
     }
-    const auto path = MeshFinder(folder).find(file);
+    const auto path = finder.find(file);
     if (!path) {
       missing += fmt::format("{}'{}'", missing.empty() ? "" : ", ", file);
       continue;

@@ -12,6 +12,7 @@
 
 #include "sim/robot/mjcf.hpp"
 #include "sim/robot/mujoco_library.hpp"
+#include "sim/robot/urdf.hpp"
 
 namespace armwright {
 
@@ -45,7 +46,8 @@ CompiledMjcf compile_prepared(MjcfText text, const std::string& name);
 // any. Returns the mesh files that it read, by name as written. Throws Error{bad_data} for a mesh
 // that decides a mass and is missing.
 std::map<std::string, std::filesystem::path> load_mesh_masses(
-    CompiledMjcf& mjcf, const std::function<bool(int body)>& moves);
+    CompiledMjcf& mjcf, const std::map<std::string, std::filesystem::path>& packages,
+    const std::function<bool(int body)>& moves);
 
 // The part of the tree of bodies that is simulated as the chain.
 struct MjcfChain {
@@ -54,7 +56,7 @@ struct MjcfChain {
   std::vector<int> joints;  // from the base to the tip
   // For each body: i if joint i - 1 of the chain moves it, 0 if it is part of the fixed base.
   std::vector<std::size_t> carriers;
-  RobotReading reading;
+  UrdfChain choice;  // of links; the tip may be the name of a site
 };
 
 // Returns the chain that `options` selects. Throws as parse_urdf() does, and Error{bad_data} if a

@@ -39,7 +39,8 @@ class MjcfBuilder {
   RobotModel build() {
     robot_.name = sanitize(m_.names);  // the model's name comes first
     robot_.base.name = mjcf_.body_name(0);
-    robot_.reading = chain_.reading;
+    robot_.reading.packages = options_.packages;
+    add_choice(chain_.choice, robot_);
     place_bodies();
     for (std::size_t i = 0; i < chain_.joints.size(); ++i) {
       add_joint(i);
@@ -242,15 +243,11 @@ class MjcfBuilder {
       const std::size_t carrier = chain_.carriers[body];
       const bool is_simple = slides(joint) || m_.jnt_type[joint] == mjJNT_HINGE;
       robot_.held_joints.push_back(mjcf_.joint_name(joint));
-      robot_.notes.push_back(fmt::format(
-          "joint '{}' is not between '{}' and '{}': held at {}, {} part of {}",
-          mjcf_.joint_name(joint), mjcf_.body_name(chain_.base), mjcf_.body_name(chain_.tip),
+      const std::string held_at =
           is_simple ? fmt::format("{:.6g} {}", held_position(joint), slides(joint) ? "m" : "rad")
-                    : "the pose of the file",
-          masses_kg[body] > 0 ? fmt::format("its {:.4g} kg are", masses_kg[body])
-                              : "what hangs on it is",
-          carrier == 0 ? "the fixed base"
-                       : fmt::format("link '{}'", robot_.links[carrier - 1].name)));
+                    : "the pose of the file";
+      robot_.notes.push_back(
+          describe_held(robot_, mjcf_.joint_name(joint), held_at, masses_kg[body], carrier));
     }
   }
 
@@ -275,8 +272,8 @@ RobotModel parse_mjcf(std::string_view xml, const std::string& name, const Robot
   }
   CompiledMjcf mjcf = compile_prepared(prepare_mjcf(xml, name), name);
   const MjcfChain chain = choose_mjcf_chain(mjcf, options);
-  auto mass_files =
-      load_mesh_masses(mjcf, [&](int body) { return chain.carriers[to_size(body)] > 0; });
+  auto mass_files = load_mesh_masses(mjcf, options.packages,
+                                     [&](int body) { return chain.carriers[to_size(body)] > 0; });
   mass_files.insert(mjcf.text.included.begin(), mjcf.text.included.end());
   RobotModel robot = MjcfBuilder(mjcf, chain, options).build();
   robot.mass_files = std::move(mass_files);

@@ -91,7 +91,7 @@ class Preparation {
     // Since version 3, a range alone limits a joint or an actuator. Version 2.2 refuses such a file
     // unless the compiler is told so.
     open("mujoco", model == nullptr ? "" : fmt::format(" model=\"{}\"", escape(model)), {name, 1});
-    // Nothing is simulated with this model, so it needs no memory for contacts.
+    // This model is never simulated, so it needs no memory for contacts.
     add_line(
         "<compiler autolimits=\"true\"/><size njmax=\"0\" nconmax=\"0\"/><option><flag "
         "constraint=\"disable\" contact=\"disable\"/></option>",

@@ -113,6 +113,12 @@ struct UrdfChain {
   std::set<std::string> moving_links;   // the links that the chain's joints move
   std::set<std::string> carried_links;  // those of them that another link carries
 };
+// Writes which chain was chosen into model.reading, and a note about a proposed tip.
+void add_choice(const UrdfChain& chain, RobotModel& model);
+// Returns the note about a joint that is not on the chain. `mass_kg` hangs on it; `carrier` is the
+// body that carries it: 0 is the base, i the link that joint i - 1 of the model moves.
+std::string describe_held(const RobotModel& model, const std::string& joint,
+                          const std::string& held_at, double mass_kg, std::size_t carrier);
 // Returns the chain that `options` selects. Checks that the links form a tree with one root. Throws
 // RobotOptionError as load_urdf() does, also if no joint between base and tip can move.
 UrdfChain choose_chain(const std::vector<UrdfLink>& links, const std::vector<UrdfJoint>& joints,

@@ -310,6 +310,30 @@ class Chooser {
 
 }  // namespace
 
+void add_choice(const UrdfChain& chain, RobotModel& model) {
+  RobotReading& reading = model.reading;
+  reading.base = chain.base;
+  reading.tip = chain.tip;
+  reading.ends = chain.ends;
+  reading.is_tip_proposed = chain.is_tip_proposed;
+  if (chain.is_tip_proposed) {
+    std::vector<std::string> others = chain.ends;
+    std::erase(others, chain.tip);
+    model.notes.push_back(fmt::format(
+        "the tip is taken to be '{}'; the other ends are {}; robot.tip or --tip names another",
+        chain.tip, list_names(others, ", ")));
+  }
+}
+
+std::string describe_held(const RobotModel& model, const std::string& joint,
+                          const std::string& held_at, double mass_kg, std::size_t carrier) {
+  return fmt::format(
+      "joint '{}' is not between '{}' and '{}': held at {}, {} part of {}", joint,
+      model.reading.base, model.reading.tip, held_at,
+      mass_kg > 0 ? fmt::format("its {:.4g} kg are", mass_kg) : "what hangs on it is",
+      carrier == 0 ? "the fixed base" : fmt::format("link '{}'", model.links[carrier - 1].name));
+}
+
 UrdfChain choose_chain(const std::vector<UrdfLink>& links, const std::vector<UrdfJoint>& joints,
                        const RobotOptions& options, const std::string& name) {
   const Tree tree(links, joints, name);

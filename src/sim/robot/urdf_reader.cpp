@@ -55,7 +55,9 @@ class Builder {
     std::ranges::sort(held_, {}, &Held::joint);  // in the order of the file
     for (const Held& held : held_) {
       model_.held_joints.push_back(checked_.joints[held.joint].name);
-      model_.notes.push_back(describe(held));
+      model_.notes.push_back(describe_held(model_, checked_.joints[held.joint].name,
+                                           checked_.placements[held.joint].held_at, held.mass_kg,
+                                           held.carrier));
     }
     std::ranges::move(mass_notes_, std::back_inserter(model_.notes));
     std::ranges::move(mass_repairs_.list(), std::back_inserter(model_.reading.repairs));
@@ -105,27 +107,8 @@ class Builder {
   }
 
   void add_reading() {
-    const UrdfChain& chain = checked_.chain;
-    RobotReading& reading = model_.reading;
-    reading.base = chain.base;
-    reading.tip = chain.tip;
-    reading.ends = chain.ends;
-    reading.is_tip_proposed = chain.is_tip_proposed;
-    reading.repairs = checked_.repairs.list();
-    if (chain.is_tip_proposed) {
-      std::vector<std::string> others;
-      for (const std::string& end : chain.ends) {
-        if (end != chain.tip) {
-          others.push_back(fmt::format("'{}'", end));
-        }
-      }
-      constexpr std::size_t kShown = 12;
-      const std::size_t more = others.size() > kShown ? others.size() - kShown : 0;
-      others.resize(others.size() - more);
-      model_.notes.push_back(fmt::format(
-          "the tip is taken to be '{}'; the other ends are {}{}; robot.tip or --tip names another",
-          chain.tip, join(others, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
-    }
+    model_.reading.repairs = checked_.repairs.list();
+    add_choice(checked_.chain, model_);
   }
 
   void assume_missing_masses() {
@@ -238,18 +221,6 @@ class Builder {
     }
   }
 
-  std::string describe(const Held& held) {
-    const std::string carrier = held.carrier == 0
-                                    ? "the fixed base"
-                                    : fmt::format("link '{}'", get_body(held.carrier).name);
-    return fmt::format(
-        "joint '{}' is not between '{}' and '{}': held at {}, {} part of {}",
-        checked_.joints[held.joint].name, checked_.chain.base, checked_.chain.tip,
-        checked_.placements[held.joint].held_at,
-        held.mass_kg > 0 ? fmt::format("its {:.4g} kg are", held.mass_kg) : "what hangs on it is",
-        carrier);
-  }
-
   const CheckedUrdf& checked_;
   std::map<std::string, std::size_t> link_numbers_;
   std::map<std::string, std::map<std::string, std::size_t>>
@@ -284,7 +255,7 @@ RobotModel build_model(const CheckedUrdf& checked, const std::string& name,
       tried.density_kg_per_m3 = kRepairDensity_kg_per_m3;
       UrdfFaults of_shapes(name);
       RobotModel model = Builder(checked, name, tried, of_shapes).build();
-      if (of_shapes.count() == 0) {
+      if (of_shapes.count() == 0 && model.reading.assumed_links.empty()) {
         return model;
       }
     }

@@ -38,7 +38,8 @@ const std::vector<std::string>& kinematics_names();  // in the order of the enum
 enum class LimitPolicy { ignore, warn, enforce };
 const std::vector<std::string>& limit_policy_names();  // in the order of the enum
 
-// What the integrals of the controllers hold when these are enabled, at the start of a test case.
+// The effort that the integrals of the controllers hold when these are enabled, at the start of a
+// test case.
 //   empty    nothing, as in version 1.0: the arm sags until they have filled
 //   gravity  the arm in its first posture (TargetTable::holding_effort)
 enum class ControlStart { empty, gravity };

@@ -45,7 +45,7 @@ class ArmPlant {
   // the motor of an elastic joint.
   double get_pushed(std::size_t joint, double q) const;
 
-  // What a drive did in a control period: its last effort, the largest magnitude, the mean square
+  // The measures of a drive in one control period: its last effort, the largest magnitude, the mean square
   // (N m or N), the share of clamped substeps, and the positive work (J).
   struct DriveMeasures {
     double effort, peak, square, clamped, work;

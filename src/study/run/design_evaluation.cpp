@@ -17,8 +17,8 @@ namespace {
 // Returns false if it was stopped.
 template <class Take>
 bool simulate_all(const TrackingProblem& problem, const ArmDesign& design, const ChosenCases& cases,
-                  unsigned jobs, bool motion, StopSignal& stop, RunObserver& observer,
-                  Progress progress, const Take& take) {
+                  unsigned jobs, StopSignal& stop, RunObserver& observer, Progress progress,
+                  const Take& take) {
   // The cases between two reports of the progress must occupy all threads.
   constexpr std::uint64_t kCasesPerJob = 10;
   constexpr std::uint64_t kBatchesPerJob = 4;
@@ -30,7 +30,8 @@ bool simulate_all(const TrackingProblem& problem, const ArmDesign& design, const
   observer.on_progress(progress);
   for (std::uint64_t first = 0; first < cases.count;) {
     const std::uint64_t count = std::min(cases.count - first, at_once);
-    auto results = evaluate_design(problem, design, cases.set, first, count, jobs, motion, stop);
+    auto results =
+        evaluate_design(problem, design, cases.set, first, count, jobs, cases.motion, stop);
     if (!results) {
       return false;
     }
@@ -104,7 +105,7 @@ std::optional<DesignEvaluation> evaluate_with_progress(const TrackingProblem& pr
       motion.add(one.motion);
     }
   };
-  if (!simulate_all(problem, design, cases, jobs, true, stop, observer, progress, keep)) {
+  if (!simulate_all(problem, design, cases, jobs, stop, observer, progress, keep)) {
     return std::nullopt;
   }
   std::vector<double> errors;
@@ -145,7 +146,7 @@ std::optional<ErrorSurvey> survey_with_progress(const TrackingProblem& problem,
       errors.push_back(error);
     }
   };
-  if (!simulate_all(problem, design, cases, jobs, false, stop, observer, progress, take)) {
+  if (!simulate_all(problem, design, cases, jobs, stop, observer, progress, take)) {
     return std::nullopt;
   }
   survey.summary = summarize(errors, kFailureError_m);

@@ -19,6 +19,7 @@ namespace armwright {
 struct ChosenCases {
   TestSet set;
   std::uint64_t count = 0;
+  bool motion = false;  // whether the errors of the motion are measured, too
 };
 
 // Returns the tracking problem of a problem. Throws Error{usage} for an analytic function, which

@@ -121,32 +121,35 @@ void check_not_idle(const RunPlan& plan, const RunEvaluator& evaluator) {
   }
 }
 
-// Measures what the winner does beside its errors at rest, on the cases of its test. Returns false if
-// stopped. A comparison's cells, told runs and runs that version 1.0 began are not measured.
+// Measures what the winner of an arm does beside its errors at rest, on the cases of its test.
+// Returns false if stopped. A comparison's cells and told runs are not simulated again. Runs that
+// version 1.0 began do not get the fields that it did not know.
 bool measure_winner(const RunRequest& request, const RunPlan& plan, StopSignal& stop,
-                    RunResult& result) {
+                    RunObserver& observer, RunResult& result) {
   const TrackingProblem* const arm = plan.problem.tracking();
-  if (arm == nullptr || !result.winner || request.derived != DerivedFiles::all ||
-      plan.selection.evaluated_only || plan.selection.most == 0) {
+  if (arm == nullptr || !result.winner || plan.selection.most == 0) {
     return true;
   }
   const ArmDesign design = arm->make_design(result.judged[*result.winner].candidate.x);
-  const CaseSets& sets = plan.problem.sets;
-  const auto cases =
-      evaluate_design(*arm, design, arm->get_set(sets.test), 0,
-                      static_cast<std::uint64_t>(sets.test_cases), request.jobs, true, stop);
-  if (!cases) {
-    return false;
-  }
-  MotionErrors motion;
-  for (const MeasuredCase& one : *cases) {
-    motion.add(one.motion);
-  }
-  result.test_motion = motion.summarize();
   const EffortTotals efforts = calc_effort_totals(design, arm->config().robot);
   if (efforts.force_n) {
     result.sliding_efforts = efforts;
   }
+  if (request.derived != DerivedFiles::all || plan.selection.evaluated_only) {
+    return true;
+  }
+  const CaseSets& sets = plan.problem.sets;
+  const ChosenCases cases{.set = arm->get_set(sets.test),
+                          .count = static_cast<std::uint64_t>(sets.test_cases),
+                          .motion = true};
+  Progress progress;
+  progress.total = cases.count;
+  const auto evaluation =
+      evaluate_with_progress(*arm, design, cases, request.jobs, stop, observer, progress);
+  if (!evaluation) {
+    return false;
+  }
+  result.test_motion = evaluation->motion;
   return true;
 }
 
@@ -253,7 +256,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   journal.close();
   try {
     const StopScope scope(&stop);
-    if (!measure_winner(request, plan, stop, result)) {
+    if (!measure_winner(request, plan, stop, observer, result)) {
       add_time();
       return std::nullopt;
     }

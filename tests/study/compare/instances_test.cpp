@@ -86,13 +86,7 @@ TEST_F(StudyTest, AStudyOfVersion1KeepsWhatWasProposed) {
   request.budget = 4;
   StudyPlan old = make_study_plan(request);
   std::vector<std::string> then = request.settings;
-  then.insert(then.end(),
-              {"robot.dynamics=false", "robot.plant=\"\"", "robot.repair=false",
-               "control.start=empty", "task.solver=scalar", "control.period_s=0.01",
-               "physics.substeps=10", "workspace.centre_m=[0.4, 0, 1.2]", "workspace.radius_m=0.1",
-               "workspace.shortest_move_m=0.01", "workspace.normal=[0, 1, 0]",
-               "task.home=[0.3, 0.9]", "task.distance_limit_m=0.2", "task.speed_m_per_s=0.2",
-               "variables.start_bandwidth_rad_per_s=0"});
+  then.insert(then.end(), kProposedByVersion1.begin(), kProposedByVersion1.end());
   old.problems[0].loaded = load_problem("robot", then);
   study(old, "study");
   StudyPlan now = make_study_plan(request);
