@@ -77,6 +77,21 @@ std::string describe_task(ToolOrientation orientation) {
   return "position of the tip";
 }
 
+// Returns the distance that the joint slides while turning joints turn by 1 rad, all at their speed
+// limits: the nearest power of two, so that counting in it does not round. 1 without such limits.
+double calc_unit_of_slides(const RobotModel& robot, const Joint& sliding) {
+  double sum_rad_per_s = 0;
+  int turning = 0;
+  for (const Joint& joint : robot.joints) {
+    if (joint.kind == JointKind::revolute) {
+      sum_rad_per_s += joint.speed_limit;
+      ++turning;
+    }
+  }
+  const double unit = sliding.speed_limit * turning / sum_rad_per_s;
+  return std::isfinite(unit) && unit > 0 ? std::exp2(std::round(std::log2(unit))) : 1;
+}
+
 }  // namespace
 
 const std::vector<std::string>& numeric_solver_names() {
@@ -126,6 +141,7 @@ NumericKinematics::NumericKinematics(const RobotModel& robot, const ToolTask& to
     part.has_middle = std::isfinite(joint.lower) && std::isfinite(joint.upper);
     part.middle = part.has_middle ? 0.5 * (joint.lower + joint.upper) : 0;
     length_m_ += part.place.norm() + (part.slides && part.has_middle ? part.upper - part.lower : 0);
+    part.unit = part.slides ? calc_unit_of_slides(robot, joint) : 1;
     chain_.push_back(part);
   }
   if (home_.empty()) {
@@ -177,8 +193,9 @@ void NumericKinematics::make_lane_chain(const RobotModel& robot) {
     Vector3d::Map(joint.place_m) = basis.transpose() * part.place;
     basis = part.turn.transpose() * basis * tilt;
     joint.slides = part.slides;
-    joint.lower = part.lower;
-    joint.upper = part.upper;
+    joint.unit_m = part.unit;
+    joint.lower = part.lower / part.unit;
+    joint.upper = part.upper / part.unit;
     turn_before = &joint.turn_rad;
     chain.reach_m += part.place.norm();
     if (part.slides) {
@@ -462,8 +479,9 @@ void NumericKinematics::approach(std::span<Approach* const> some) const {
       const bool is_used = lane < some.size();
       const Approach& search = *some[is_used ? lane : 0];
       for (Eigen::Index i = 0; i < n; ++i) {
-        block.q[i][lane] = search.q[i];
-        block.wish[i][lane] = search.wish[i];
+        const double unit = chain_[static_cast<std::size_t>(i)].unit;
+        block.q[i][lane] = search.q[i] / unit;
+        block.wish[i][lane] = search.wish[i] / unit;
       }
       for (Eigen::Index row = 0; row < 3; ++row) {
         block.position_m[row][lane] = search.target.position_m[row];
@@ -482,7 +500,7 @@ void NumericKinematics::approach(std::span<Approach* const> some) const {
     for (std::size_t lane = 0; lane < std::min(some.size(), std::size_t{postures::kLanes});
          ++lane) {
       for (Eigen::Index i = 0; i < n; ++i) {
-        some[lane]->q[i] = block.q[i][lane];
+        some[lane]->q[i] = chain_[static_cast<std::size_t>(i)].unit * block.q[i][lane];
       }
       some[lane]->reached = (reached >> lane & 1) != 0;
     }

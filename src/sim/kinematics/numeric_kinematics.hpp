@@ -16,6 +16,12 @@
 //   pointing  L times the difference of the tool's axis from its target (m),
 //   pose      L times the rotation vector between the tool's orientation and its target (m).
 //
+// The norms that the iteration weighs up add rad and m. A sliding joint's way is therefore counted
+// in units of the distance that it slides while the turning joints turn by 1 rad, all at their speed
+// limits: of joints that could do the same, the slow one moves less (Chan and Dubey 1995, A weighted
+// least-norm solution based scheme for avoiding joint limits for redundant joint manipulators, IEEE
+// Transactions on Robotics and Automation 11, 286-292). `scalar` counts in m.
+//
 // Two solvers iterate in this way. `lanes` solves eight postures at once in SIMD lanes
 // (posture_solver.hpp). `scalar` is that of version 1.0, one posture at a time; recorded
 // configurations of 1.0 keep it, because the last bits of the two differ.
@@ -142,6 +148,7 @@ class NumericKinematics {
     Eigen::Vector3d axis;
     Eigen::Matrix3d cross, outer;  // [a]x and a a^T, a the axis
     bool slides = false;
+    double unit = 1;  // of a sliding joint's way, in `lanes` (m)
     double lower = 0, upper = 0, middle = 0;
     bool has_middle = false;
   };

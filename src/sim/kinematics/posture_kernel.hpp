@@ -109,7 +109,7 @@ ARMWRIGHT_INLINE void calc_posture(const Chain& chain, const V* q, Posture<V>& p
     posture.axis[i] = turn.z;
     posture.place[i] = place;
     if (joint.slides) {
-      place = place + q[i] * turn.z;
+      place = place + (V(joint.unit_m) * q[i]) * turn.z;
     }
     const V sine = sines[i], cosine = cosines[i];
     const Vec3<V> y = turn.y;
@@ -370,7 +370,7 @@ struct Search {
     V largest = zero;
     for (int i = 0; i < joints; ++i) {
       const bool slides = chain.joint[i].slides;
-      Vec3<V> way = posture.axis[i];
+      Vec3<V> way = V(chain.joint[i].unit_m) * posture.axis[i];
       if (!slides) {
         way = cross(posture.axis[i], posture.tip - posture.place[i]);
       }

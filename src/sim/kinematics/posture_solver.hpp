@@ -38,7 +38,8 @@ struct ChainJoint {
   // The angle about z, beside the joint's own, to the frame of the next joint.
   double turn_rad = 0;
   bool slides = false;
-  double lower = 0, upper = 0;  // the joint's range (rad or m); may be infinite
+  double unit_m = 1;            // a sliding joint's way is counted in this unit
+  double lower = 0, upper = 0;  // the joint's range (rad or units); may be infinite
 };
 
 // A serial chain and its task.
@@ -62,7 +63,7 @@ struct Chain {
 
 // Eight searches for a posture, each [number][lane].
 struct Block {
-  alignas(64) double q[kMostJoints][kLanes];  // start, then solution (rad or m)
+  alignas(64) double q[kMostJoints][kLanes];  // start, then solution (rad or units)
   double wish[kMostJoints][kLanes];           // w, of the first iteration
   double position_m[3][kLanes];               // the target
   double turn[3][3][kLanes];                  // not used if the orientation is free

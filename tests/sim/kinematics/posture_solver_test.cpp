@@ -178,6 +178,40 @@ TEST(PostureSolver, JointsAtTheEndsOfTheirRangesAreHeldAsByTheScalarSolver) {
   expect_agreement(1e-3, true);
 }
 
+// A lift below a seven-joint arm: both can move the tool up, and the slower the lift is, the less it
+// does.
+TEST(PostureSolver, OfJointsThatCanDoTheSameTheSlowOneMovesLess) {
+  RobotModel arm = load_urdf(ARMWRIGHT_CONFIGS "/robots/arm7.urdf");
+  Joint lift = arm.joints.front();
+  lift.kind = JointKind::prismatic;
+  lift.axis = Eigen::Vector3d::UnitZ();
+  lift.lower = -1;
+  lift.upper = 1;
+  arm.joints.insert(arm.joints.begin(), lift);
+  arm.links.insert(arm.links.begin(), arm.links.front());
+  ToolTask tool;
+  tool.orientation = ToolOrientation::pose;
+  const std::vector<double> start = {0, 0.2, 0.6, 0.1, 1.2, 0.3, 0.8, 0.1};
+  const auto find_share_of_lift = [&](double speed_m_per_s) {
+    arm.joints.front().speed_limit = speed_m_per_s;
+    const NumericKinematics kinematics(arm, tool, {}, true);
+    std::vector<double> q = start;
+    ToolPose target = kinematics.calc_pose(q);
+    target.position_m.z() += 1e-3;
+    EXPECT_TRUE(kinematics.follow(target, std::vector<double>(q.size(), 0), q));
+    return q[0] / 1e-3;
+  };
+  double turning_rad_per_s = 0;
+  for (std::size_t i = 1; i < arm.joint_count(); ++i) {
+    turning_rad_per_s += arm.joints[i].speed_limit / static_cast<double>(arm.joint_count() - 1);
+  }
+  const double as_1_m = find_share_of_lift(turning_rad_per_s);
+  const double slow = find_share_of_lift(turning_rad_per_s / 16);
+  // The least norm: shares in proportion to s^2 a lift of unit s, and c of the other joints.
+  EXPECT_LT(slow, 0.2);
+  EXPECT_NEAR((1 / slow - 1) / (1 / as_1_m - 1), 16 * 16, 1);
+}
+
 // One iteration from any posture to any other, with errors of any angle up to a half turn. The
 // damping is then large, so rounding is not magnified: a step is at most 0.3.
 TEST(PostureSolver, TheFirstIterationIsThatOfTheScalarSolverForAnyTurn) {
