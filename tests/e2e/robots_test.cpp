@@ -100,8 +100,8 @@ TEST_P(ShippedRobots, GoFromUrdfToTunedControllersWithOneCommand) {
 }
 
 INSTANTIATE_TEST_SUITE_P(E2e, ShippedRobots,
-                         testing::Values("irb4600_40_255", "irb4600_six", "planar2", "arm7",
-                                         "arm7_gripper"));
+                         testing::Values("irb4600_40_255", "irb4600_six", "kr300", "planar2",
+                                         "arm7", "arm7_gripper"));
 
 TEST_F(Robots, ThatSlideGoThatWayToo) {
   write("scara.urdf", kScara);

@@ -52,7 +52,7 @@ TEST(BadName, UnknownRobotIsNamedWhereTheProblemNamesIt) {
   EXPECT_EQ(ProblemFolder().refusal_of_base_with("[robot]\nurdf = 'irb4600_40_254'"),
             "p.toml:3: robot.urdf is 'irb4600_40_254'; unknown robot 'irb4600_40_254'; did you "
             "mean 'irb4600_40_255'? Valid: arm7, arm7_gripper, irb4600_40_255, irb4600_six, "
-            "planar2 (or the path of a .urdf or .xml file)");
+            "kr300, planar2 (or the path of a .urdf or .xml file)");
 }
 
 TEST(BadPath, SaysWhereItWasLookedFor) {

@@ -68,7 +68,7 @@ TEST(Irb4600Six, HasTheRangesAndSpeedsOfTheDataSheet) {
 }
 
 TEST(ShippedRobots, HaveNothingLeftOut) {
-  for (const std::string name : {"irb4600_40_255", "irb4600_six", "planar2", "arm7"}) {
+  for (const std::string name : {"irb4600_40_255", "irb4600_six", "kr300", "planar2", "arm7"}) {
     const RobotModel robot = load_shipped(name);
     EXPECT_EQ(robot.name, name);
     EXPECT_THAT(robot.notes, IsEmpty()) << name;
