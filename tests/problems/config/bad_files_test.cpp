@@ -121,10 +121,10 @@ TEST(NamedFile, OfTheShippedOnesMayHaveItsExtension) {
 
 TEST(NamedFile, OfAPlantIsNoRobot) {
   const ProblemFolder folder;
-  EXPECT_THAT(
-      folder.refusal_of_base_with("[robot]\nplant = 'arm7'\n"),
-      testing::HasSubstr("p.toml:3: robot.plant is 'arm7'; unknown plant 'arm7'. Valid: (none) (or "
-                         "the path of a .toml file)"));
+  EXPECT_THAT(folder.refusal_of_base_with("[robot]\nplant = 'arm7'\n"),
+              testing::HasSubstr(
+                  "p.toml:3: robot.plant is 'arm7'; unknown plant 'arm7'. Valid: kr300.plant "
+                  "(or the path of a .toml file)"));
   EXPECT_THAT(folder.refusal_of_base_with("[robot]\nurdf = 'mine.toml'\n"),
               testing::HasSubstr("p.toml:3: robot.urdf is 'mine.toml'; unknown robot 'mine.toml'"));
 }
