@@ -34,6 +34,7 @@ armwright_library(duktape ARMWRIGHT_WITH_PAGE "${DUKTAPE_VERSION}")
 armwright_library(eigen TRUE "${Eigen3_VERSION}")
 armwright_library(fmt TRUE "${fmt_VERSION}")
 armwright_library(libyaml TRUE "${YAML_0.1_VERSION}")
+armwright_library(lz4 TRUE "${LIBLZ4_VERSION}")
 armwright_library(mujoco ARMWRIGHT_WITH_MUJOCO "${mujoco_version}")
 armwright_library(nlohmann_json TRUE "${nlohmann_json_VERSION}")
 armwright_library(nlopt ARMWRIGHT_WITH_NLOPT "${NLOPT_VERSION}")
@@ -45,6 +46,7 @@ armwright_library(sqlite TRUE "${SQLite3_VERSION}")
 armwright_library(tinyxml2 TRUE "${TINYXML2_VERSION}")
 armwright_library(tomlplusplus TRUE "${TOMLPLUSPLUS_VERSION}")
 armwright_library(zlib TRUE "${ZLIB_VERSION_STRING}")
+armwright_library(zstd TRUE "${LIBZSTD_VERSION}")
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/library_versions.hpp CONTENT
      "// Written by cmake/build_info.cmake. An empty version means: not in this build.
 inline constexpr struct {

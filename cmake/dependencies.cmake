@@ -12,6 +12,8 @@ pkg_check_modules(ODE REQUIRED IMPORTED_TARGET ode)
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)
 pkg_check_modules(YAML_0.1 REQUIRED IMPORTED_TARGET yaml-0.1)
+pkg_check_modules(LIBLZ4 REQUIRED IMPORTED_TARGET liblz4)
+pkg_check_modules(LIBZSTD REQUIRED IMPORTED_TARGET libzstd)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 find_path(BOOST_INCLUDE_DIR boost/math/distributions/fisher_f.hpp REQUIRED) # Boost.Math has headers only
 

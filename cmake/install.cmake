@@ -8,7 +8,7 @@ set(ARMWRIGHT_PACKAGE_ROOMS ${ARMWRIGHT_ROOMS})
 list(FILTER ARMWRIGHT_PACKAGE_ROOMS INCLUDE REGEX ".")
 list(REMOVE_ITEM ARMWRIGHT_PACKAGE_ROOMS cli)
 # The pkg-config modules that the libraries need.
-set(ARMWRIGHT_PACKAGE_MODULES ode tomlplusplus tinyxml2 yaml-0.1)
+set(ARMWRIGHT_PACKAGE_MODULES ode tomlplusplus tinyxml2 yaml-0.1 liblz4 libzstd)
 if(ARMWRIGHT_WITH_PAGE)
   list(APPEND ARMWRIGHT_PACKAGE_MODULES duktape)
 endif()

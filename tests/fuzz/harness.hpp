@@ -51,6 +51,7 @@ void fuzz_urdf(std::string_view input);
 void fuzz_test_cases(std::string_view input);
 void fuzz_path(std::string_view input);
 void fuzz_gains(std::string_view input);
+void fuzz_log(std::string_view input);
 void fuzz_messages(std::string_view input);
 void fuzz_descriptor(std::string_view input);
 void fuzz_journal(std::string_view input);

@@ -35,6 +35,7 @@ constexpr HarnessRow kHarnesses[] = {
     {"export_json", fuzz_export_json},
     {"path", fuzz_path},
     {"gains", fuzz_gains},
+    {"log", fuzz_log},
     {"http_request", fuzz_http_request},
 };
 
