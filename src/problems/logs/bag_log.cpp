@@ -400,7 +400,8 @@ class BagLogReader {
     }
     const bool is_motor = columns_.options().columns.contains("motor_torque");
     Field effort = make_field(feedback, 3);
-    if (!is_state_ && !has_values(message, effort) && message.point_count > kOutput &&
+    const bool is_mapped = is_motor || columns_.options().columns.contains("effort");
+    if (!is_state_ && !is_mapped && !has_values(message, effort) && message.point_count > kOutput &&
         has_values(message, make_field(kOutput, 3))) {
       effort = make_field(kOutput, 3);
       recording_.notes.push_back(

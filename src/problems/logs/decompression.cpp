@@ -82,24 +82,23 @@ std::string decompress_lz4(std::string_view bytes, std::size_t limit_bytes,
   std::string content;
   std::vector<char> piece(kPiece_bytes);
   std::size_t done = 0;
-  std::size_t left = bytes.empty() ? 0 : 1;
-  while (true) {
+  bool is_whole = bytes.empty();
+  while (!(is_whole && done == bytes.size())) {
     std::size_t written = piece.size();
     std::size_t taken = bytes.size() - done;
-    left = LZ4F_decompress(context, piece.data(), &written, bytes.data() + done, &taken, nullptr);
+    const std::size_t left =
+        LZ4F_decompress(context, piece.data(), &written, bytes.data() + done, &taken, nullptr);
     if (LZ4F_isError(left)) {
       refuse_frames(where, fmt::format("lz4 cannot decompress it at byte {}: {}", done,
                                        LZ4F_getErrorName(left)));
     }
-    done += taken;
-    append_piece(content, piece, written, limit_bytes, where);
     if (taken == 0 && written == 0) {
-      break;
+      refuse_frames(where, fmt::format("ends at byte {}, within a frame of lz4: it was cut off",
+                                       bytes.size()));
     }
-  }
-  if (left != 0) {
-    refuse_frames(
-        where, fmt::format("ends at byte {}, within a frame of lz4: it was cut off", bytes.size()));
+    done += taken;
+    is_whole = left == 0;
+    append_piece(content, piece, written, limit_bytes, where);
   }
   return content;
 }

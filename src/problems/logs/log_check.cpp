@@ -188,11 +188,13 @@ bool find_degrees(Checked& checked) {
     const Joint& joint = get_joint(checked, j);
     const double low = checked.log.positions.col(j).minCoeff();
     const double high = checked.log.positions.col(j).maxCoeff();
-    const double beyond = std::max(high - joint.upper, joint.lower - low);
+    const bool is_beyond = high > joint.upper + kBeyondRange || low < joint.lower - kBeyondRange;
     const bool fits_as_degrees = high / kDegPerRad <= joint.upper + kBeyondRange &&
                                  low / kDegPerRad >= joint.lower - kBeyondRange;
-    constexpr double kFar_rad = 1;
-    if (joint.kind == JointKind::revolute && beyond > kFar_rad && fits_as_degrees) {
+    // A wrong zero or a wrong joint leads out of the range, too, but hardly by more than a turn.
+    constexpr double kTurn_rad = 7;
+    if (joint.kind == JointKind::revolute && is_beyond && fits_as_degrees &&
+        std::max(high, -low) > kTurn_rad) {
       found.push_back(
           fmt::format("{} goes from {:.4g} to {:.4g}, and joint {} from {:.4g} to {:.4g} "
                       "rad",
@@ -221,12 +223,12 @@ void check_ranges(Checked& checked) {
     Eigen::Index first = 0;
     outside.cast<int>().maxCoeff(&first);
     checked.faults.push_back(fmt::format(
-        "{} is {:.4g} {} in {}, and the range of joint {} is {:.4g} to {:.4g} ({} samples are "
+        "{} is {:.4g} {} in {}, and the range of joint {} is {:.4g} to {:.4g} {} ({} samples are "
         "outside); columns of other joints, another zero or another direction of the joint look "
         "like this; --column says which column is which, --joints which joint",
         quote_column(checked, LogQuantity::position, j), column[first], get_unit(checked, j),
         checked.recording.name_row(static_cast<std::size_t>(first)), quote_name(joint.name),
-        joint.lower, joint.upper, outside.count()));
+        joint.lower, joint.upper, get_unit(checked, j), outside.count()));
   }
 }
 

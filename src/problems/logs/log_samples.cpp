@@ -49,8 +49,14 @@ EvenTimes choose_times(const MotionLog& log, std::vector<std::string>& notes) {
   }
   std::ranges::sort(periods_s);
   const double shortest_s = periods_s.front(), longest_s = periods_s.back();
-  even.period_s = periods_s[periods_s.size() / 2];
-  // Clocks have whole microseconds; the median of uneven times has not.
+  // The mean period, with lost samples counted.
+  const double median_s = periods_s[periods_s.size() / 2];
+  double steps = 0;
+  for (const double period_s : periods_s) {
+    steps += std::max(1.0, std::round(period_s / median_s));
+  }
+  even.period_s = whole_s / steps;
+  // Clocks have whole microseconds.
   const double rounded_s = std::round(1e6 * even.period_s) * 1e-6;
   if (std::abs(rounded_s / even.period_s - 1) < 1e-2) {
     even.period_s = rounded_s;

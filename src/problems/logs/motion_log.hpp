@@ -39,17 +39,17 @@ struct LogOptions {
   // The columns by armwright's names: time, and position_N, velocity_N, effort_N, motor_torque_N,
   // link_position_N and reference_N for the joint N. For a bag: position, velocity, effort,
   // motor_torque or reference, and the field of the message: "effort", "output.effort".
-  std::map<std::string, std::string> columns;
+  std::map<std::string, std::string> columns = {};
   // Units by armwright's names, with or without the joint: {"position", "deg"}, {"time", "ms"}. The
   // unit of positions also counts for link positions and references.
-  std::map<std::string, std::string> units;
+  std::map<std::string, std::string> units = {};
   // Motor angle per joint position, rad/rad or rad/m. They make efforts of motor torques.
-  std::map<std::string, double> gear_ratios;
+  std::map<std::string, double> gear_ratios = {};
   // 1 or -1 for each joint whose efforts have the opposite sign in the file.
-  std::map<std::string, double> signs;
+  std::map<std::string, double> signs = {};
   // The names that the file has for the robot's joints, in the robot's order. Empty: the robot's.
-  std::vector<std::string> joints;
-  std::string topic;  // of a bag; empty: the only one that fits
+  std::vector<std::string> joints = {};
+  std::string topic = {};  // of a bag; empty: the only one that fits
 };
 
 // Sets one value of the options from the words of the command line: `option` is "column", "unit",
