@@ -324,6 +324,7 @@ void add_all_commands(CLI::App& app, Session& session) {
   app.require_subcommand(1);
   add_list(app, session);
   add_optimize(app, session);
+  add_identify(app, session);
   add_ask(app, session);
   add_tell(app, session);
   add_compare(app, session);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -102,19 +103,55 @@ const Setting<double> kSpringPressure{
     "pressure_pa", kPlantPositive, kNoDefault,
     "gas spring: pressure where it is shortest, in place of pressure_volume_j"};
 
+const Setting<double> kBalanceScale{"scale",
+                                    {.lower = 1e-3, .upper = 1e3},
+                                    1.0,
+                                    "factor on the efforts, as armwright identify finds it"};
+const Setting<double> kBalanceSlope{
+    "slope",
+    {.lower = -0.95, .upper = 0.95},
+    0.0,
+    "the factor is scale (1 + slope z), with z from -1 to 1 over the joint's range"};
+
 const SettingTable kCounterbalanceSettings{
     .key = "counterbalance",
     .settings = {&kPositions.revolute, &kEfforts.revolute, &kPositions.prismatic,
-                 &kEfforts.prismatic}};
+                 &kEfforts.prismatic, &kBalanceScale, &kBalanceSlope}};
 const SettingTable kGasSpringSettings{
     .key = "gas_spring",
     .settings = {&kSpringDistance, &kSpringArm, &kSpringOffset, &kSpringPiston, &kSpringRod,
-                 &kSpringArea, &kSpringVolume, &kSpringProduct, &kSpringPressure}};
+                 &kSpringArea, &kSpringVolume, &kSpringProduct, &kSpringPressure, &kBalanceScale,
+                 &kBalanceSlope}};
 
-// The declarations of a file for joints of these names.
+const Setting<double> kBodyMass{"mass_kg", kPlantNotNegative, kNoDefault, "mass of the body"};
+const Setting<std::vector<double>> kBodyCom{
+    "com_m", kPlantAnySign, kNoDefault,
+    "centre of mass, three numbers, in the frame of the tip (payload) or of the link"};
+const Setting<std::vector<double>> kBodyInertia{
+    "inertia_kg_m2", kPlantAnySign, std::vector<double>{},
+    "inertia about the centre of mass, in the same frame's axes: xx, xy, xz, yy, yz, zz (default: "
+    "a point mass)"};
+const SettingTable kPayloadSettings{.key = "payload",
+                                    .settings = {&kBodyMass, &kBodyCom, &kBodyInertia}};
+
+const Setting<std::vector<std::string>> kFittedLogs{"logs", std::vector<std::string>{},
+                                                    "the logs, each NAME SHA-256"};
+const Setting<std::vector<std::string>> kFittedParameters{
+    "parameters", kNoDefault, "names of the parameters that were fitted"};
+const Setting<std::vector<double>> kFittedValues{"values", kNoDefault, "their values"};
+const Setting<std::vector<double>> kFittedCovariance{
+    "covariance", kNoDefault, "their covariance: the lower triangle, row by row"};
+const Setting<double> kFittedDelay{"delay_s", Range{.lower = -1, .upper = 1}, 0.0,
+                                   "age of the recorded efforts"};
+const SettingTable kFittedSettings{.key = "identification",
+                                   .settings = {&kFittedLogs, &kFittedParameters, &kFittedValues,
+                                                &kFittedCovariance, &kFittedDelay}};
+
+// The declarations of a file for joints and links of these names.
 class PlantSettings {
  public:
-  explicit PlantSettings(const std::vector<std::string>& names) : joints_{.key = "joint"} {
+  PlantSettings(const std::vector<std::string>& names, const std::vector<std::string>& links)
+      : joints_{.key = "joint"}, links_{.key = "link"} {
     for (const std::string& name : names) {
       SettingTable& table = tables_.emplace_back();
       table.key = name;
@@ -131,16 +168,22 @@ class PlantSettings {
       table.tables = {&kCounterbalanceSettings, &kGasSpringSettings};
       joints_.tables.push_back(&table);
     }
-    file_.tables = {&joints_};
+    for (const std::string& name : links) {
+      SettingTable& table = tables_.emplace_back(kPayloadSettings);
+      table.key = name;
+      links_.tables.push_back(&table);
+    }
+    file_.tables = {&joints_, &links_, &kPayloadSettings, &kFittedSettings};
   }
   PlantSettings(const PlantSettings&) = delete;  // tables point into each other
 
   const SettingTable& file() const { return file_; }
   const SettingTable& joints() const { return joints_; }
+  const SettingTable& links() const { return links_; }
 
  private:
   std::deque<SettingTable> tables_;
-  SettingTable joints_, file_;
+  SettingTable joints_, links_, file_;
 };
 
 // The number of a key, or `fallback`. Refuses the key of the other kind of joint.
@@ -174,7 +217,7 @@ double read_armature(const ConfigTable& table, JointKind kind, double fallback) 
   if (rotor && !ratio) {
     table.refuse(kRotorInertia, fmt::format("it needs {}", ratio_setting.key));
   }
-  if (ratio && !rotor) {
+  if (ratio && !rotor && !armature) {
     table.refuse(ratio_setting, fmt::format("it needs {}", kRotorInertia.key));
   }
   return rotor ? *rotor * *ratio * *ratio : armature.value_or(fallback);
@@ -344,6 +387,7 @@ void read_joint(const ConfigTable& table, Joint& joint) {
   }
   JointPlant& plant = joint.plant;
   plant.armature = read_armature(table, joint.kind, plant.armature);
+  plant.gear_ratio = find_or(table, kGearRatio, joint.kind, plant.gear_ratio);
   read_friction(table, joint.kind, plant);
   read_elasticity(table, joint.kind, plant);
   const bool has_points = table.has(kCounterbalanceSettings.key);
@@ -358,6 +402,85 @@ void read_joint(const ConfigTable& table, Joint& joint) {
     check_range(table, kGasSpringSettings, joint);
     plant.counterbalance = read_gas_spring(table.get_table(kGasSpringSettings), joint);
   }
+  if (has_points || has_spring) {
+    const ConfigTable its =
+        table.get_table(has_points ? kCounterbalanceSettings : kGasSpringSettings);
+    plant.counterbalance.correct(its.get(kBalanceScale), its.get(kBalanceSlope));
+  }
+}
+
+Inertial read_body(const ConfigTable& table) {
+  Inertial body;
+  body.mass_kg = table.get(kBodyMass);
+  const std::vector<double> com_m = table.get(kBodyCom);
+  if (com_m.size() != 3) {
+    table.refuse(kBodyCom, "it must be three numbers: x, y, z");
+  }
+  body.com_m = Eigen::Vector3d(com_m[0], com_m[1], com_m[2]);
+  const std::vector<double> i = table.get(kBodyInertia);
+  if (!i.empty()) {
+    if (i.size() != 6) {
+      table.refuse(kBodyInertia, "it must be six numbers: xx, xy, xz, yy, yz, zz");
+    }
+    body.inertia_kg_m2 << i[0], i[1], i[2], i[1], i[3], i[4], i[2], i[4], i[5];
+    const Eigen::Vector3d moments =
+        body.inertia_kg_m2.selfadjointView<Eigen::Lower>().eigenvalues();
+    const double slack = 1e-9 * std::max(1e-12, moments.cwiseAbs().maxCoeff());
+    if (moments[0] < -slack || moments[2] > moments[0] + moments[1] + slack) {
+      table.refuse(kBodyInertia,
+                   fmt::format("no body has it: its principal moments are {:.6g}, {:.6g} and "
+                               "{:.6g}; none may be negative, and none may exceed the sum of the "
+                               "others",
+                               moments[0], moments[1], moments[2]));
+    }
+  }
+  return body;
+}
+
+std::optional<FittedPlant> read_fitted(const ConfigTable& table, const RobotModel& robot) {
+  FittedPlant fitted;
+  fitted.logs = table.get(kFittedLogs);
+  fitted.delay_s = table.get(kFittedDelay);
+  const std::vector<std::string> names = table.get(kFittedParameters);
+  try {
+    fitted.parameters = find_parameters(robot, names);
+  } catch (const Error& error) {
+    table.refuse(kFittedParameters, error.what());
+  }
+  fitted.values = table.get(kFittedValues);
+  if (fitted.values.size() != names.size()) {
+    table.refuse(kFittedValues,
+                 fmt::format("it must hold {} numbers, one per parameter", names.size()));
+  }
+  const std::vector<double> lower = table.get(kFittedCovariance);
+  const std::size_t count = names.size();
+  if (lower.size() != count * (count + 1) / 2) {
+    table.refuse(kFittedCovariance,
+                 fmt::format("it must hold {} numbers: the lower triangle of {} rows",
+                             count * (count + 1) / 2, count));
+  }
+  const auto n = static_cast<Eigen::Index>(count);
+  fitted.covariance.resize(n, n);
+  std::size_t next = 0;
+  for (Eigen::Index row = 0; row < n; ++row) {
+    for (Eigen::Index column = 0; column <= row; ++column) {
+      fitted.covariance(row, column) = fitted.covariance(column, row) = lower[next++];
+    }
+  }
+  for (Eigen::Index row = 0; row < n; ++row) {
+    for (Eigen::Index column = 0; column <= row; ++column) {
+      const double most =
+          std::sqrt(std::max(0.0, fitted.covariance(row, row) * fitted.covariance(column, column)));
+      if (!(std::abs(fitted.covariance(row, column)) <= most * (1 + 1e-9))) {
+        table.refuse(kFittedCovariance,
+                     fmt::format("no covariance: the number of '{}' and '{}' is larger than their "
+                                 "variances allow",
+                                 names[static_cast<std::size_t>(row)],
+                                 names[static_cast<std::size_t>(column)]));
+      }
+    }
+  }
+  return fitted;
 }
 
 // Makes every key of a joint beside the chain known. Its values are not used.
@@ -372,15 +495,20 @@ void skip_joint(const ConfigTable& table, const SettingTable& settings) {
   }
 }
 
-void read_plant(const std::filesystem::path& file, RobotModel& robot) {
-  std::vector<std::string> names;
+std::optional<FittedPlant> read_plant(const std::filesystem::path& file, RobotModel& robot) {
+  std::vector<std::string> names, link_names;
+  for (const Link& link : robot.links) {
+    link_names.push_back(link.name);
+  }
   for (const Joint& joint : robot.joints) {
     names.push_back(joint.name);
   }
   names.insert(names.end(), robot.held_joints.begin(), robot.held_joints.end());
-  const PlantSettings settings(names);
+  const PlantSettings settings(names, link_names);
   const ConfigTable document = ConfigTable::load(settings.file(), file);
-  const ConfigTable joints = document.get_table(settings.joints());
+  const bool has_others = document.has(settings.links().key) || document.has(kPayloadSettings.key);
+  const ConfigTable joints = has_others ? document.get_table_or_empty(settings.joints())
+                                        : document.get_table(settings.joints());
   for (const std::string& name : names) {  // messages list the names in this order
     joints.has(name);
   }
@@ -396,7 +524,26 @@ void read_plant(const std::filesystem::path& file, RobotModel& robot) {
       skip_joint(table, its);
     }
   }
+  const ConfigTable links = document.get_table_or_empty(settings.links());
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    const SettingTable& its = *settings.links().tables[i];
+    if (links.has(its.key)) {
+      const ConfigTable table = links.get_table(its);
+      robot.links[i].inertial = read_body(table);
+      if (!(robot.links[i].inertial.mass_kg > 0)) {
+        table.refuse(kBodyMass, "the mass of a link must be above 0");
+      }
+    }
+  }
+  if (document.has(kPayloadSettings.key)) {
+    set_payload(robot, read_body(document.get_table(kPayloadSettings)));
+  }
+  std::optional<FittedPlant> fitted;
+  if (document.has(kFittedSettings.key)) {
+    fitted = read_fitted(document.get_table(kFittedSettings), robot);
+  }
   document.refuse_unknown();
+  return fitted;
 }
 
 struct PlantNumber {
@@ -422,10 +569,10 @@ std::filesystem::path name_plant_file(std::filesystem::path urdf) {
   return urdf.replace_extension(".plant.toml");
 }
 
-void load_plant(const std::filesystem::path& file, RobotModel& robot) {
+std::optional<FittedPlant> load_plant(const std::filesystem::path& file, RobotModel& robot) {
   const ReadStep step(fmt::format("the plant '{}'", sanitize(file.string())));
   try {
-    read_plant(file, robot);
+    return read_plant(file, robot);
   } catch (const Error& error) {
     // The plant is an input like the URDF, not a part of the configuration.
     throw Error(error.kind() == ErrorKind::usage ? ErrorKind::bad_data : error.kind(),
@@ -434,7 +581,7 @@ void load_plant(const std::filesystem::path& file, RobotModel& robot) {
 }
 
 const SettingTable& plant_settings() {
-  static const PlantSettings settings({"NAME"});
+  static const PlantSettings settings({"NAME"}, {"NAME"});
   return settings.file();
 }
 

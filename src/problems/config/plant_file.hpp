@@ -12,14 +12,20 @@
 //   s  = -h A c / (V - A dl)                       its effort on the joint
 // A is the area that the gas acts on, (pi / 4) (piston^2 - rod^2). c is pressure times volume, and V
 // the gas volume at dl = 0. The spring pulls the joint to x = 0. Source: Weigand, Gafur and
-// Ruskowski (2021), the hydraulic counterbalance of a KUKA KR300, with constant temperature.
+// Ruskowski (2021), the hydraulic counterbalance of a KUKA KR300, with constant temperature. Both
+// forms may have the corrections scale and slope of sim/robot/joint_plant.hpp.
+//
+// Beside the joints, a file may have a payload, other mass properties of links, and the uncertainty
+// that an identification left ([identification], sim/identification/fitted_plant.hpp).
 #pragma once
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "base/setting.hpp"
+#include "sim/identification/fitted_plant.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace armwright {
@@ -30,9 +36,10 @@ inline constexpr const char* kPlantBeside = "auto";
 // Returns "arm.plant.toml" for "arm.urdf" and for "arm", in the same folder.
 std::filesystem::path name_plant_file(std::filesystem::path urdf);
 
-// Sets the plants of the robot's joints. A value of the file replaces that of the model; the other
-// values stay. Counterbalances get 1025 points. Tables of joints that the URDF has beside the chain
-// are checked for unknown keys and ignored.
+// Sets the plants of the robot's joints, and its payload and links where the file has them. A value
+// of the file replaces that of the model; the other values stay. Counterbalances get 1025 points.
+// Tables of joints that the URDF has beside the chain are checked for unknown keys and ignored.
+// Returns what an identification left uncertain, or nothing if the file does not say it.
 //
 // Throws Error{io} if the file cannot be read, and Error{bad_data} that names file, line and key for
 // - a joint that the robot does not have, and keys for the other kind of joint,
@@ -42,8 +49,15 @@ std::filesystem::path name_plant_file(std::filesystem::path urdf);
 // - stiffness without armature, and damping or a measured side without stiffness,
 // - a counterbalance on a joint without finite range or with more than one turn,
 // - points whose positions do not increase or do not cover the joint's range,
-// - a gas spring whose volume is used up within the range.
-void load_plant(const std::filesystem::path& file, RobotModel& robot);
+// - a gas spring whose volume is used up within the range,
+// - a body that cannot exist, a parameter that the robot does not have, a covariance that is none.
+std::optional<FittedPlant> load_plant(const std::filesystem::path& file, RobotModel& robot);
+
+// Returns the text of a file with all that `robot` has beyond `urdf`, the same robot without a
+// plant's file, and with `fitted`. The robot that load_plant() makes of both is the same up to the
+// rounding of counterbalances. `head` is written before it as a comment.
+std::string write_plant(const RobotModel& robot, const RobotModel& urdf, const FittedPlant& fitted,
+                        const std::string& head);
 
 // Returns the declarations of the file's settings, for joints called NAME.
 const SettingTable& plant_settings();

@@ -22,10 +22,12 @@ const Setting<std::string> kTitle{"title", kNoDefault,
                                   "one line, for lists and reports (default: the name)"};
 const Setting<std::string> kDescription{"description", "", "some lines more"};
 const Setting<std::string> kProblemKind{
-    "kind", one_of({"tracking", "analytic", "program", "command", "external"}), kNoDefault,
+    "kind", one_of({"tracking", "analytic", "program", "command", "external", "identification"}),
+    kNoDefault,
     "tracking: a robot follows a moving target; analytic: a function with a known optimum; "
     "program: a problem of your own that a program computes; command: one that a command line "
-    "computes, case by case; external: one whose results you hand over (armwright ask)"};
+    "computes, case by case; external: one whose results you hand over (armwright ask); "
+    "identification: a robot's parameters are found in recorded motions"};
 const Setting<std::string> kProblemName{
     "name", kNoDefault,
     "name of the problem and of its runs' folders (default: the file's name); {robot} in it stands "
@@ -278,7 +280,7 @@ const SettingTable& problem_settings() {
                  &kPerturbationSettings, &kSweepSettings,         &kWinnerSettings,
                  &kFunctionSettings,     &kProgramSettings,       &kCommandSettings,
                  &kUserVariableSettings, &kUserObjectiveSettings, &kUserConstraintSettings,
-                 &kUserMetricSettings,   &kUserCasesSettings}};
+                 &kUserMetricSettings,   &kUserCasesSettings,     &kIdentificationSettings}};
   return settings;
 }
 
@@ -337,6 +339,14 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
     if (kind != "program") {  // a record is read without the file that gives the name
       table.settle(kProblemName, loaded.name);
     }
+  } else if (kind == "identification") {
+    load_identification(table, loaded);
+    table.settle(kProblemName, loaded.name);
+    const ConfigTable sets = table.get_table_or_empty(kSetsSettings);
+    sets.settle(kSetsValidationCases, loaded.sets.validation_cases);
+    sets.settle(kSetsTestCases, loaded.sets.test_cases);
+    loaded.schedule = {};
+    loaded.schedule.cases = static_cast<int>(loaded.sets.training_cases);
   } else {
     load_tracking(table, engines, loaded);
     if (table.get_or(kProblemName, "").find(kRobotInName) != std::string::npos) {

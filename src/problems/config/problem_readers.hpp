@@ -24,6 +24,7 @@
 #include "problems/interface/schedule.hpp"
 #include "problems/tracking/tracking_config.hpp"
 #include "sim/engines/engine_table.hpp"
+#include "sim/identification/fitted_plant.hpp"
 
 namespace armwright {
 
@@ -91,10 +92,26 @@ extern const SettingTable kMotorSettings;
 extern const Setting<std::string> kRobotUrdf;
 // Calls the function. Puts the robot's file before the message of an Error{bad_data}.
 void name_robot_file(const std::filesystem::path& urdf, const std::function<void()>& call);
+// The robot that the table [robot] describes, with the masses of its file.
+struct ReadRobot {
+  RobotModel robot;
+  RobotModel plain;             // without the plant's file
+  std::filesystem::path plant;  // that file; may be empty
+  std::optional<FittedPlant> fitted;
+};
+// Records the robot's files as inputs.
+ReadRobot read_robot(const ConfigTable& table, LoadedProblem& loaded);
 // Sets the problem and the hashes of its inputs. Throws Error{bad_data} for a file that a table
 // names and that is wrong.
 void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
                    LoadedProblem& loaded);
+
+// identification_reader.cpp: [identification], a robot's parameters from recorded motions
+
+extern const SettingTable kIdentificationSettings;
+// Sets the problem, its cases and the hashes of its inputs. Throws Error{bad_data} for a log that
+// cannot be read or fails a check.
+void load_identification(const ConfigTable& table, LoadedProblem& loaded);
 
 // engine_reader.cpp: [physics]
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
@@ -299,11 +300,8 @@ void settle_reading(const ConfigTable& table, const RobotReading& reading) {
   }
 }
 
-// Returns the robot that [robot] describes, with the masses of its file, and its plant's file, which
-// may be empty.
-std::pair<RobotModel, std::filesystem::path> load_robot(const ConfigTable& table,
-                                                        const std::filesystem::path& urdf,
-                                                        LoadedProblem& loaded) {
+ReadRobot load_robot(const ConfigTable& table, const std::filesystem::path& urdf,
+                     LoadedProblem& loaded) {
   RobotOptions options;
   options.base = table.get(kRobotBase);
   options.tip = table.get(kRobotTip);
@@ -317,17 +315,21 @@ std::pair<RobotModel, std::filesystem::path> load_robot(const ConfigTable& table
   options.packages = read_packages(table);
   const std::filesystem::path plant = find_plant(table, urdf);
   try {
-    RobotModel robot = load_urdf(urdf, options);
+    ReadRobot all;
+    all.robot = load_urdf(urdf, options);
+    all.plain = all.robot;
+    all.plant = plant;
+    RobotModel& robot = all.robot;
     settle_reading(table, robot.reading);
     add_input(loaded, urdf);
     for (const auto& [name, path] : robot.mass_files) {
       loaded.input_hashes[name] = calc_sha256_hex(read_file(path, kMeshFileLimit_bytes));
     }
     if (!plant.empty()) {
-      load_plant(plant, robot);
+      all.fitted = load_plant(plant, robot);
       add_input(loaded, plant);
     }
-    return {std::move(robot), plant};
+    return all;
   } catch (const RobotOptionError& error) {
     table.refuse(table.has(error.option()) ? error.option() : kRobotUrdf.key, error.what());
   }
@@ -355,6 +357,10 @@ void name_robot_file(const std::filesystem::path& urdf, const std::function<void
   }
 }
 
+ReadRobot read_robot(const ConfigTable& table, LoadedProblem& loaded) {
+  return load_robot(table, resolve_named(table, kRobotUrdf, "robots"), loaded);
+}
+
 void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
                    LoadedProblem& loaded) {
   TrackingConfig config;
@@ -363,8 +369,8 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   const ConfigTable robot = table.get_table(kRobotSettings);
   const auto urdf = resolve_named(robot, kRobotUrdf, "robots");
   config.mass_scale = robot.get(kRobotMassScale);
-  auto [model, plant] = load_robot(robot, urdf, loaded);
-  config.robot = scale_masses(std::move(model), config.mass_scale);
+  ReadRobot read = load_robot(robot, urdf, loaded);
+  config.robot = scale_masses(std::move(read.robot), config.mass_scale);
   scale_plants_of(robot, config);
   config.own_effort_limits = robot.get(kRobotDynamics);
 
@@ -392,7 +398,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
       table.get_table_or_empty(kMotorSettings).get(kMotorsTorquePerMass);
   config.perturbation = read_perturbation(table.get_table_or_empty(kPerturbationSettings),
                                           {config.robot, config.start}, loaded);
-  check_elasticity(physics, config, plant);
+  check_elasticity(physics, config, read.plant);
   check_load(task, table.get_table_or_empty(kPerturbationSettings), config);
   check_limits(table.get_table_or_empty(kObjectiveSettings), config);
   config.requirements = read_requirements(table.get_tables_or_empty(kRequirementSettings), config);

@@ -17,16 +17,29 @@
 // Units: rad, rad/s and N m for a revolute joint, m, m/s and N for a prismatic one.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace armwright {
 
 // The effort s(q) of a spring or gas spring that acts beside the motor. It is given at even
 // distances from `lower` to `upper`, is straight between these positions, and keeps its value beyond
-// both ends.
+// both ends. The efforts are those of a model times scale (1 + slope z), with z from -1 at `lower` to
+// 1 at `upper`: the corrections that an identification finds (sim/identification).
 struct Counterbalance {
   double lower = 0, upper = 0;  // rad or m
-  std::vector<double> efforts;  // N m or N, at least two; empty: no counterbalance
+  std::vector<double> efforts;  // N m or N, corrected; at least two; empty: no counterbalance
+  double scale = 1, slope = 0;  // scale > 0, |slope| < 1
+
+  // Corrects the model in another way.
+  void correct(double new_scale, double new_slope) {
+    for (std::size_t i = 0; i < efforts.size(); ++i) {
+      const double z = 2 * static_cast<double>(i) / static_cast<double>(efforts.size() - 1) - 1;
+      efforts[i] *= new_scale * (1 + new_slope * z) / (scale * (1 + slope * z));
+    }
+    scale = new_scale;
+    slope = new_slope;
+  }
 
   bool operator==(const Counterbalance&) const = default;
 };
@@ -36,6 +49,7 @@ enum class MeasuredSide { motor, link };
 
 struct JointPlant {
   double armature = 0;            // A, kg m^2 or kg
+  double gear_ratio = 0;          // motor's angle per joint position, for logs; 0: not known
   double viscous = 0;             // d, N m s/rad or N s/m
   double coulomb = 0;             // c, N m or N
   double stribeck = 0;            // s_t, N m or N; at least -c

@@ -112,6 +112,9 @@ struct RobotModel {
   std::vector<Eigen::Vector3d> tool_points_m;
   // The names of the joints that could move and are held, because they are not on the chain.
   std::vector<std::string> held_joints;
+  // A body at the tip that the last link's inertial includes, in the tip's frame: that of the file of
+  // the plant. Nothing: there is none.
+  std::optional<Inertial> payload;
   // Notes for the user, one line each, safe to print on a terminal. They name the parts of the file
   // that simulations ignore and the assumptions that the reader made.
   std::vector<std::string> notes;

@@ -1,0 +1,275 @@
+// armwright identify: finds a robot's plant in logs of its motion.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "base/toml_text.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/commands/plan_options.hpp"
+#include "cli/terminal/arguments.hpp"
+#include "cli/terminal/format.hpp"
+#include "cli/terminal/progress_bar.hpp"
+#include "cli/terminal/session.hpp"
+#include "cli/terminal/table.hpp"
+#include "cli/terminal/terminal.hpp"
+#include "problems/config/plant_file.hpp"
+#include "problems/identification/identification_problem.hpp"
+#include "study/identification/fit_report.hpp"
+#include "study/run/run.hpp"
+#include "study/run/run_folder.hpp"
+#include "study/run/run_observer.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr const char* kIdentifyExamples = R"(Examples:
+  armwright identify a.csv b.csv --robot my.urdf --validate c.csv
+  armwright identify run.mcap --robot my.urdf --fit friction,armature,payload
+  armwright identify log.csv --robot my.urdf --column position_1=q1 --column time=t --unit position=deg
+  armwright identify log.csv --robot my.urdf --gear-ratio joint_1=101 --sign joint_3=-1
+  armwright optimize --robot my.urdf --plant results/my-plant-ceres:lm-seed1/plant.toml
+
+The logs are read, checked, filtered below --cutoff without phase, and differentiated. The parameters start at those of
+linear least squares on the inverse dynamics; then the optimizer searches (default: ceres:lm). The folder gets
+plant.toml, which robots take as their plant, and identification.json with intervals, correlations and residuals.
+Logs of --validate are held back: they only judge. docs/identification.md explains formats, groups and figures.)";
+
+constexpr const char* kIdentifyProblem = "identify";
+constexpr const char* kIdentifyOptimizer = "ceres:lm";
+
+struct IdentifyOptions : PlanOptions {
+  std::vector<std::string> logs, held_back, columns, units, ratios, signs;
+  std::string fit, joints, topic, cutoff, payload, payload_com;
+  std::string jobs, time_limit;
+  FolderOptions folder;
+  bool json = false;
+  bool quiet = false;
+};
+
+std::string write_list(const std::vector<std::string>& words) {
+  std::vector<std::string> quoted;
+  std::ranges::transform(words, std::back_inserter(quoted), quote_toml);
+  return "[" + join(quoted, ", ") + "]";
+}
+
+// Turns the flags into settings of [identification].
+void add_settings(IdentifyOptions& options) {
+  const auto add = [&](const char* key, const std::string& value) {
+    options.overrides.set.push_back(fmt::format("identification.{}={}", key, value));
+  };
+  const auto add_files = [&](const char* key, const std::vector<std::string>& files) {
+    std::vector<std::string> absolute;
+    for (const std::string& file : files) {
+      absolute.push_back(std::filesystem::absolute(file).lexically_normal().string());
+    }
+    add(key, write_list(absolute));
+  };
+  add_files("logs", options.logs);
+  add_files("validate", options.held_back);
+  const std::pair<const char*, const std::vector<std::string>*> lists[] = {
+      {"columns", &options.columns},
+      {"units", &options.units},
+      {"gear_ratios", &options.ratios},
+      {"signs", &options.signs}};
+  for (const auto& [key, words] : lists) {
+    if (!words->empty()) {
+      add(key, write_list(*words));
+    }
+  }
+  if (!options.fit.empty()) {
+    add("fit", write_list(split(options.fit, ',')));
+  }
+  if (!options.joints.empty()) {
+    add("joints", write_list(split(options.joints, ',')));
+  }
+  if (!options.topic.empty()) {
+    add("topic", quote_toml(options.topic));
+  }
+  if (!options.cutoff.empty()) {
+    add("cutoff_hz", options.cutoff);
+  }
+  if (!options.payload.empty()) {
+    add("payload_kg", options.payload);
+  }
+  if (!options.payload_com.empty()) {
+    add("payload_com_m", "[" + options.payload_com + "]");
+  }
+}
+
+std::string describe_set(const FitSet& set, const std::string& title, const Style& style) {
+  Table table({{"joint", false},
+               {"torque itself"},
+               {"before"},
+               {"after"},
+               {"unit", false},
+               {"residuals", false}});
+  for (const JointFit& joint : set.joints) {
+    table.add_row({sanitize(joint.joint), format_significant(joint.deviation, 4),
+                   format_significant(joint.before, 4), format_significant(joint.after, 4),
+                   joint.unit,
+                   joint.whiteness_p < 0.05
+                       ? fmt::format("not white: they repeat over {:.2g} s", joint.independent_s)
+                       : "white"});
+  }
+  return "\n" + style.bold(fmt::format("{}: {}", title, join(set.logs, ", "))) + "\n" +
+         table.format(style, 2) +
+         fmt::format("  mean error, in deviations of the torque: {:.4g} -> {:.4g} ({:.3g} times)\n",
+                     set.before, set.after, set.after / set.before);
+}
+
+std::string describe_fit(const FitAnalysis& analysis, const std::vector<std::string>& doubts,
+                         const std::filesystem::path& folder, const Style& style) {
+  std::string text;
+  for (const std::string& doubt : doubts) {
+    text += style.bold("doubt: ") + sanitize(doubt) + "\n";
+  }
+  Table table({{"parameter", false},
+               {"before"},
+               {"value"},
+               {"95 % interval"},
+               {"unit", false},
+               {"", false}});
+  for (const FittedParameter& parameter : analysis.parameters) {
+    table.add_row({sanitize(parameter.name), format_significant(parameter.before, 4),
+                   format_significant(parameter.value, 5),
+                   fmt::format("{:.4g} to {:.4g}", parameter.lower, parameter.upper),
+                   parameter.unit, parameter.is_determined ? "" : "cannot be told"});
+  }
+  text += table.format(style, 0);
+  for (const std::string& sentence : analysis.undetermined) {
+    text += "note: " + sanitize(sentence) + "\n";
+  }
+  text += describe_set(analysis.fitted, "Fitted", style);
+  if (!analysis.judged.joints.empty()) {
+    text += describe_set(analysis.judged, "Held back", style);
+  }
+  return text + "\n" + style.bold("Files in " + sanitize(folder.string())) +
+         "\n  plant.toml           the robot's plant, with what is uncertain (--plant)\n"
+         "  identification.json  parameters, intervals, correlations, efforts and residuals\n";
+}
+
+int run_identify(IdentifyOptions options, Session& session) {
+  add_settings(options);
+  options.problem = kIdentifyProblem;
+  if (options.optimizer.empty() && options.opt.empty()) {
+    options.optimizer = kIdentifyOptimizer;
+    options.opt = {"derivatives=exact", "transform=none"};
+  }
+  RunRequest request;
+  request.jobs = parse_jobs(options.jobs);
+  apply_time_limit(options.time_limit, session.stop);
+  request.plan = options.make_plan();
+  const auto* problem =
+      dynamic_cast<const IdentificationProblem*>(request.plan.problem.problem.get());
+  request.folder = options.folder.choose(make_run_name(request.plan));
+  request.command_line = session.command_line;
+  if (!options.quiet) {
+    write_message(fmt::format("{}: {} parameters, optimizer {}, folder {}",
+                              request.plan.problem.name, problem->parameters().size(),
+                              request.plan.optimizer.name, request.folder.string()));
+    std::ranges::for_each(problem->notes(), write_message);
+  }
+  catch_signals(session.stop);
+  ProgressBar bar(options.quiet, get_scalar_quantity(problem->description().objectives));
+  LockedObserver observer(bar);
+  const auto result = execute_run(request, session.stop, observer);
+  bar.clear();
+  if (!result) {
+    return end_stopped(session, request.command_line);
+  }
+  if (!result->winner) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("no set of parameters could be evaluated: {}", result->first_failure));
+  }
+  const std::vector<double>& x = result->judged[*result->winner].candidate.x;
+  const FitAnalysis analysis = analyse_fit(*problem, x);
+  FittedPlant fitted = make_fitted_plant(*problem, x, analysis);
+  for (const auto& [name, hash] : request.plan.problem.input_hashes) {
+    if (std::ranges::find(analysis.fitted.logs, name) != analysis.fitted.logs.end()) {
+      fitted.logs.push_back(name + " " + hash);
+    }
+  }
+  const std::vector<std::string> doubts = list_doubts(analysis, result->end_reason != "budget");
+  write_file_atomically(
+      request.folder / "plant.toml",
+      write_plant(make_fitted_robot(*problem, x), problem->plain_robot(), fitted,
+                  fmt::format("# The plant of {}, identified by armwright from {}.\n",
+                              sanitize(problem->robot().name), join(analysis.fitted.logs, ", "))));
+  const std::string report = to_json(*problem, x, analysis);
+  write_file_atomically(request.folder / "identification.json", report);
+  write_stdout(options.json ? report
+                            : describe_fit(analysis, doubts, request.folder,
+                                           make_style(Stream::out, session.color)));
+  return get_result_code(*result);
+}
+
+}  // namespace
+
+void add_identify(CLI::App& app, Session& session) {
+  auto options = std::make_shared<IdentifyOptions>();
+  CLI::App* command = add_command(app, session, "identify",
+                                  "Find a robot's plant in logs of its motion", kIdentifyExamples);
+  command
+      ->add_option("LOG", options->logs,
+                   "A CSV file, or a bag of ROS 2 (MCAP, sqlite3): times, joint positions and\n"
+                   "efforts; several logs are fitted together")
+      ->required();
+  const auto add_list = [&](const char* flag, std::vector<std::string>& values, const char* words,
+                            const char* type) {
+    command->add_option(flag, values, words)->type_name(type)->allow_extra_args(false);
+  };
+  add_list("--validate", options->held_back,
+           "A log that is held back and judges the fit; repeatable", "LOG");
+  command
+      ->add_option("--fit", options->fit,
+                   "What is fitted: friction, stribeck, armature, payload, counterbalance,\n"
+                   "stiffness, delay, inertial (default: friction,armature)")
+      ->type_name("GROUPS");
+  add_list("--column", options->columns,
+           "The log's column of a quantity, as in position_1=q1 or time=t; repeatable",
+           "OURS=THEIRS");
+  add_list("--unit", options->units, "The unit of a quantity, as in position=deg; repeatable",
+           "QUANTITY=UNIT");
+  add_list("--gear-ratio", options->ratios,
+           "Motor angle per joint position, for logs with motor torques; repeatable",
+           "JOINT=RATIO");
+  add_list("--sign", options->signs,
+           "A joint whose efforts have the other sign, JOINT=-1; repeatable", "JOINT=SIGN");
+  command
+      ->add_option("--joints", options->joints,
+                   "The log's names of the robot's joints, in the robot's order")
+      ->type_name("NAMES");
+  command
+      ->add_option("--topic", options->topic,
+                   "The topic of a bag (default: the only one that fits)")
+      ->type_name("NAME");
+  command->add_option("--cutoff", options->cutoff, "Cut-off of the filter (default: 8)")
+      ->type_name("HZ");
+  command
+      ->add_option("--payload", options->payload,
+                   "The payload that the robot carried, as far as it is known")
+      ->type_name("KG");
+  command
+      ->add_option("--payload-com", options->payload_com,
+                   "Its centre of mass in the tip's frame (default: 0,0,0)")
+      ->type_name("X,Y,Z");
+  options->add_to(*command);
+  options->overrides.add_to(*command);
+  add_jobs_flag(*command, options->jobs);
+  add_time_limit_flag(*command, options->time_limit);
+  options->folder.add_to(*command, "run", "results/ROBOT-plant-OPTIMIZER-seedN");
+  command->add_flag("--json", options->json, "Print identification.json")->group("Output");
+  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
+  command->callback([options, &session] {
+    session.shares_work = true;
+    session.action = [options, &session] { return run_identify(*options, session); };
+  });
+}
+
+}  // namespace armwright

@@ -1,0 +1,288 @@
+#include "problems/identification/linear_start.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/tracking/designed_arm.hpp"
+
+namespace armwright {
+namespace {
+
+using Eigen::Index;
+using Kind = PlantParameter::Kind;
+
+// The boxes end where one parameter would explain this many times the joint's largest effort.
+constexpr double kBoxShare = 3;
+// Stribeck rate over transition rate. Closer, the two rises of friction cannot be told apart.
+constexpr double kLeastRates = 3;
+constexpr double kMostDelay_s = 0.05;
+constexpr double kLongestDeflection = 0.1;  // rad or m
+constexpr double kMostBalance = 3;
+constexpr double kInertiaSpan = 2;  // of the logarithms, and of the ratios s and t in their scale
+constexpr double kReach_m = 1;      // farthest centre of a payload's mass from the tip
+constexpr double kPayloadPlace_m = 0.05;  // how well the place of a stated payload is known
+constexpr double kStiffest = 1e9;         // N m/rad or N/m
+
+// The largest magnitudes that the motions have of a joint.
+struct Largest {
+  double effort = 0, rate = 0, acceleration = 0;
+};
+
+Largest find_largest(std::span<const FittedMotion> motions, std::size_t joint) {
+  Largest largest;
+  const auto i = static_cast<Index>(joint);
+  for (const FittedMotion& motion : motions) {
+    largest.effort = std::max(largest.effort, motion.efforts.col(i).cwiseAbs().maxCoeff());
+    const JointMotion& its = motion.model.motion();
+    largest.rate = std::max(largest.rate, its.rates.col(i).cwiseAbs().maxCoeff());
+    largest.acceleration =
+        std::max(largest.acceleration, its.accelerations.col(i).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+// Returns the lower and the upper end of a parameter's box. The robot's own value is inside.
+std::pair<double, double> find_box(const RobotModel& robot, const PlantParameter& parameter,
+                                   const Largest& largest) {
+  const double effort = kBoxShare * largest.effort;
+  const double tiny = 1e-9;
+  switch (parameter.kind) {
+    case Kind::viscous:
+      return {0, effort / std::max(largest.rate, tiny)};
+    case Kind::coulomb:
+    case Kind::breakaway:
+      return {0, effort};
+    case Kind::offset:
+      return {-effort, effort};
+    case Kind::stribeck_rate:
+      return {kLeastRates * robot.joints[parameter.joint].plant.transition_rate,
+              std::max(largest.rate,
+                       2 * kLeastRates * robot.joints[parameter.joint].plant.transition_rate)};
+    case Kind::armature:
+      return {0, effort / std::max(largest.acceleration, tiny)};
+    case Kind::payload:
+      return parameter.part == 0 ? std::pair(0.0, std::max(10.0, calc_moving_mass_kg(robot)))
+                                 : std::pair(-kReach_m, kReach_m);
+    case Kind::counterbalance:
+      return parameter.part == 0 ? std::pair(1e-3, kMostBalance) : std::pair(-0.9, 0.9);
+    case Kind::stiffness:
+      return {std::max(1e-3, largest.effort / kLongestDeflection), kStiffest};
+    case Kind::encoder_offset:
+      return {-kLongestDeflection, kLongestDeflection};
+    case Kind::delay:
+      return {-kMostDelay_s, kMostDelay_s};
+    case Kind::inertia:
+      return {-kInertiaSpan, kInertiaSpan};  // around the robot's own value
+  }
+  return {0, 0};
+}
+
+// Returns whether efforts are linear in the parameter.
+bool is_linear(const PlantParameter& parameter) {
+  switch (parameter.kind) {
+    case Kind::stribeck_rate:
+    case Kind::stiffness:
+    case Kind::encoder_offset:
+    case Kind::delay:
+    case Kind::inertia:
+    case Kind::payload:  // its ten numbers are in its place
+      return false;
+    case Kind::counterbalance:
+      return parameter.part == 0;
+    default:
+      return true;
+  }
+}
+
+double move_into(const DecisionVariable& variable, double value) {
+  return std::clamp(value, variable.lower, variable.upper);
+}
+
+// Sets the payload's start of the ten numbers by which the last link differs from the robot's.
+void set_payload_start(const RobotModel& robot, std::span<const PlantParameter> parameters,
+                       const LinkNumbers& change, std::vector<DecisionVariable>& variables) {
+  const Inertial own = transform(robot.payload.value_or(Inertial{}), robot.tip_pose);
+  const double mass_kg = own.mass_kg + change[0];
+  const Eigen::Vector3d moment = own.mass_kg * own.com_m + change.segment<3>(1);
+  const Eigen::Vector3d com_m = mass_kg > 1e-3
+                                    ? Eigen::Vector3d(robot.tip_pose.inverse() * (moment / mass_kg))
+                                    : Eigen::Vector3d::Zero();
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].kind == Kind::payload) {
+      const int part = parameters[p].part;
+      variables[p].start = move_into(variables[p], part == 0 ? mass_kg : com_m[part - 1]);
+    }
+  }
+}
+
+// Sets the start of the stiffness of the joints: least squares on deflections of the start's model.
+void set_stiffness_start(const IdentificationProblem& problem,
+                         std::vector<DecisionVariable>& variables) {
+  const auto& parameters = problem.parameters();
+  std::vector<double> x;
+  for (const DecisionVariable& variable : variables) {
+    x.push_back(variable.start);
+  }
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].kind != Kind::stiffness) {
+      continue;
+    }
+    const auto i = static_cast<Index>(parameters[p].joint);
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    for (const FittedMotion& motion : problem.fitted()) {
+      const PlantModel::Efforts model = motion.model.calc(x, false);
+      const Index n = motion.efforts.cols();
+      for (Index k = 0; k < motion.efforts.rows(); ++k) {
+        const Eigen::Vector2d row(model.link[k * n + i], 1);
+        normal += row * row.transpose();
+        right += row * motion.deflections(k, i);
+      }
+    }
+    const Eigen::Vector2d found = normal.colPivHouseholderQr().solve(right);
+    variables[p].start = move_into(variables[p], found[0] > 0 ? 1 / found[0] : variables[p].upper);
+    variables[p + 1].start = move_into(variables[p + 1], found[1]);
+  }
+}
+
+}  // namespace
+
+std::vector<DecisionVariable> make_boxes(const RobotModel& robot,
+                                         std::span<const PlantParameter> parameters,
+                                         std::span<const FittedMotion> motions) {
+  std::vector<DecisionVariable> variables;
+  for (const PlantParameter& parameter : parameters) {
+    auto [lower, upper] = find_box(robot, parameter, find_largest(motions, parameter.joint));
+    const double own = get_parameter(robot, parameter);
+    if (parameter.kind == Kind::inertia) {
+      const bool is_length = parameter.part > 3;
+      const double scale = is_length ? std::max(std::abs(own), kReach_m / 2) : 1;
+      lower = own + lower * scale;
+      upper = own + upper * scale;
+    }
+    if (parameter.kind == Kind::stiffness) {
+      upper = std::max(upper, 2 * lower);
+    }
+    variables.push_back(
+        {.name = parameter.name,
+         .unit = parameter.unit,
+         .lower = std::min(lower, own),
+         .upper = std::max(upper, own),
+         .start = own,
+         .scale = parameter.kind == Kind::stiffness ? Scale::logarithmic : Scale::linear});
+    DecisionVariable& variable = variables.back();
+    if (variable.scale == Scale::logarithmic) {
+      variable.lower = lower;
+      variable.start = std::clamp(own, lower, upper);
+    }
+  }
+  return variables;
+}
+
+Eigen::VectorXd list_priors(const RobotModel& robot, std::span<const PlantParameter> parameters) {
+  Eigen::VectorXd deviations(static_cast<Index>(parameters.size()));
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const double own = get_parameter(robot, parameters[p]);
+    double& deviation = deviations[static_cast<Index>(p)];
+    switch (parameters[p].kind) {
+      case Kind::armature:
+        deviation = 0.3 * own;
+        break;
+      case Kind::counterbalance:
+        deviation = 0.2;
+        break;
+      case Kind::stribeck_rate:
+        deviation = own;
+        break;
+      case Kind::payload:
+        if (robot.payload && robot.payload->mass_kg > 0) {
+          deviation = parameters[p].part == 0 ? 0.1 * own : kPayloadPlace_m;
+        }
+        break;
+      case Kind::inertia:
+        deviation = 0.3;
+        break;
+      default:
+        deviation = 0;
+    }
+  }
+  return deviations;
+}
+
+void set_linear_start(const IdentificationProblem& problem,
+                      std::vector<DecisionVariable>& variables) {
+  const auto& parameters = problem.parameters();
+  const auto n = static_cast<Index>(problem.robot().joint_count());
+  std::vector<Index> columns;
+  bool has_payload = false;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (is_linear(parameters[p])) {
+      columns.push_back(static_cast<Index>(p));
+    }
+    has_payload = has_payload || parameters[p].kind == Kind::payload;
+  }
+  const auto count = static_cast<Index>(columns.size()) + (has_payload ? kLinkNumbers : 0);
+  if (count > 0) {
+    std::vector<double> own;
+    for (const DecisionVariable& variable : variables) {
+      own.push_back(variable.start);
+    }
+    // The normal equations of all motions, in units of sigma.
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
+    double samples = 0;  // efforts, which have no other weights here, per motion
+    for (const FittedMotion& motion : problem.fitted()) {
+      const PlantModel::Efforts model = motion.model.calc(own, true);
+      Eigen::MatrixXd rows(model.motor.size(), count);
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        rows.col(static_cast<Index>(c)) = model.motor_jacobian.col(columns[c]);
+      }
+      if (has_payload) {
+        rows.rightCols<kLinkNumbers>() = motion.model.last_link();
+      }
+      Eigen::VectorXd errors(model.motor.size());
+      for (Index row = 0; row < errors.size(); ++row) {
+        const double sigma = problem.effort_scales()[row % n];
+        errors[row] = (motion.efforts(row / n, row % n) - model.motor[row]) / sigma;
+        rows.row(row) /= sigma;
+      }
+      normal += rows.transpose() * rows;
+      right += rows.transpose() * errors;
+      samples += static_cast<double>(errors.size()) / static_cast<double>(problem.fitted().size());
+    }
+    for (std::size_t c = 0; c < columns.size() && problem.prior_weight() > 0; ++c) {
+      const double deviation = problem.priors()[columns[c]];
+      if (deviation > 0) {
+        const auto p = static_cast<std::size_t>(columns[c]);
+        const double weight = std::pow(problem.prior_weight() / deviation, 2) *
+                              static_cast<double>(problem.fitted().size()) * samples;
+        normal(static_cast<Index>(c), static_cast<Index>(c)) += weight;
+        right[static_cast<Index>(c)] +=
+            weight * (get_parameter(problem.robot(), parameters[p]) - own[p]);
+      }
+    }
+    // Columns of one length, so that the rank does not depend on units; what the motions do not
+    // determine stays as it is.
+    const Eigen::VectorXd lengths =
+        normal.diagonal().cwiseSqrt().cwiseMax(std::numeric_limits<double>::min());
+    const Eigen::MatrixXd even =
+        lengths.cwiseInverse().asDiagonal() * normal * lengths.cwiseInverse().asDiagonal();
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+    solver.setThreshold(1e-9);
+    solver.compute(even);
+    const Eigen::VectorXd change =
+        solver.solve(right.cwiseQuotient(lengths)).cwiseQuotient(lengths);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      DecisionVariable& variable = variables[static_cast<std::size_t>(columns[c])];
+      variable.start = move_into(variable, variable.start + change[static_cast<Index>(c)]);
+    }
+    if (has_payload) {
+      set_payload_start(problem.robot(), parameters, change.tail<kLinkNumbers>(), variables);
+    }
+  }
+  set_stiffness_start(problem, variables);
+}
+
+}  // namespace armwright

@@ -1,0 +1,215 @@
+#include "sim/identification/plant_model.hpp"
+
+#include <cmath>
+
+#include "sim/dynamics/joint_effort.hpp"
+
+namespace armwright {
+namespace {
+
+using Kind = PlantParameter::Kind;
+
+// Of a counterbalance's corrections, for difference quotients of a linear function.
+constexpr double kStep = 1.0 / 64;
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+std::span<const double> row_of(const Eigen::MatrixXd& rows, Index sample,
+                               std::vector<double>& numbers) {
+  Eigen::RowVectorXd::Map(numbers.data(), rows.cols()) = rows.row(sample);
+  return numbers;
+}
+
+// Returns the derivatives of the last link's numbers by the payload's mass (part 0) and centre.
+LinkNumbers differentiate_payload(const RobotModel& robot, int part) {
+  const Inertial body = transform(*robot.payload, robot.tip_pose);
+  const Vector3d& c = body.com_m;
+  Vector3d moment = c;
+  Matrix3d inertia = c.squaredNorm() * Matrix3d::Identity() - c * c.transpose();
+  if (part > 0) {
+    const Vector3d way = robot.tip_pose.linear().col(part - 1);
+    moment = body.mass_kg * way;
+    inertia = body.mass_kg *
+              (2 * c.dot(way) * Matrix3d::Identity() - way * c.transpose() - c * way.transpose());
+  }
+  LinkNumbers numbers;
+  numbers << (part == 0 ? 1.0 : 0.0), moment, inertia(0, 0), inertia(0, 1), inertia(0, 2),
+      inertia(1, 1), inertia(1, 2), inertia(2, 2);
+  return numbers;
+}
+
+// The friction of a joint at one rate, and its derivatives.
+struct Friction {
+  double effort = 0;
+  double rise = 0, fall = 0;  // tanh(v / v_w), tanh(v / v_s)
+  double by_stribeck_rate = 0;
+};
+
+Friction calc_friction(const JointPlant& plant, double v) {
+  Friction friction;
+  friction.rise = std::tanh(v / plant.transition_rate);
+  friction.fall = std::tanh(v / plant.stribeck_rate);
+  friction.effort = plant.offset + plant.viscous * v +
+                    (plant.coulomb + plant.stribeck) * friction.rise -
+                    plant.stribeck * friction.fall;
+  friction.by_stribeck_rate = plant.stribeck * (1 - friction.fall * friction.fall) * v /
+                              (plant.stribeck_rate * plant.stribeck_rate);
+  return friction;
+}
+
+bool has_breakaway(std::span<const PlantParameter> parameters, std::size_t joint) {
+  for (const PlantParameter& parameter : parameters) {
+    if (parameter.kind == Kind::breakaway && parameter.joint == joint) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+PlantModel::PlantModel(const RobotModel& robot, std::vector<PlantParameter> parameters,
+                       double gravity_m_per_s2, const JointMotion& motion)
+    : robot_(robot), parameters_(std::move(parameters)), motion_(motion) {
+  for (Link& link : robot_.links) {
+    link.visuals.clear();
+  }
+  const LinkRegressor regressor(robot_, gravity_m_per_s2);
+  const auto n = static_cast<Index>(robot_.joint_count());
+  const Index samples = motion_.positions.rows();
+  regressor_.resize(samples * n, n * kLinkNumbers);
+  std::vector<double> q(robot_.joint_count()), v(q), a(q);
+  for (Index k = 0; k < samples; ++k) {
+    regressor.calc(row_of(motion_.positions, k, q), row_of(motion_.rates, k, v),
+                   row_of(motion_.accelerations, k, a), regressor_.middleRows(k * n, n));
+  }
+}
+
+void PlantModel::add_links(std::span<const double> x, bool jacobian, const RobotModel& changed,
+                           Efforts& efforts) const {
+  const auto n = static_cast<Index>(robot_.joint_count());
+  Eigen::VectorXd numbers(n * kLinkNumbers);
+  for (Index i = 0; i < n; ++i) {
+    numbers.segment<kLinkNumbers>(i * kLinkNumbers) =
+        to_link_numbers(changed.links[static_cast<std::size_t>(i)].inertial);
+  }
+  efforts.link = regressor_ * numbers;
+  for (std::size_t i = 0; jacobian && i < parameters_.size(); ++i) {
+    const PlantParameter& parameter = parameters_[i];
+    const auto column = static_cast<Index>(i);
+    if (parameter.kind == Kind::payload) {
+      efforts.link_jacobian.col(column) =
+          regressor_.rightCols<kLinkNumbers>() * differentiate_payload(changed, parameter.part);
+    } else if (parameter.kind == Kind::inertia && parameter.part == 0) {
+      Eigen::Matrix<double, 10, 10> derivatives;
+      calc_link_numbers(x.subspan(i).first<kLinkNumbers>(), &derivatives);
+      efforts.link_jacobian.middleCols<kLinkNumbers>(column) =
+          regressor_.middleCols<kLinkNumbers>(static_cast<Index>(parameter.joint) * kLinkNumbers) *
+          derivatives;
+    }
+  }
+}
+
+void PlantModel::add_balance(const RobotModel& changed, bool jacobian, Efforts& efforts) const {
+  const auto n = static_cast<Index>(robot_.joint_count());
+  for (Index i = 0; i < n; ++i) {
+    const Joint& joint = changed.joints[static_cast<std::size_t>(i)];
+    if (joint.plant.counterbalance.efforts.empty()) {
+      continue;
+    }
+    for (Index k = 0; k < motion_.positions.rows(); ++k) {
+      efforts.link[k * n + i] -= articulated::calc_counterbalance(joint, motion_.positions(k, i));
+    }
+  }
+  for (std::size_t i = 0; jacobian && i < parameters_.size(); ++i) {
+    const PlantParameter& parameter = parameters_[i];
+    if (parameter.kind != Kind::counterbalance) {
+      continue;
+    }
+    // The efforts are linear in each of the two corrections, point by point of their grid.
+    Joint slope = changed.joints[parameter.joint];
+    Counterbalance& balance = slope.plant.counterbalance;
+    std::vector<double> own = balance.efforts;
+    const bool is_scale = parameter.part == 0;
+    balance.correct(balance.scale + (is_scale ? kStep : 0), balance.slope + (is_scale ? 0 : kStep));
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      balance.efforts[k] = (balance.efforts[k] - own[k]) / kStep;
+    }
+    const auto at = static_cast<Index>(parameter.joint);
+    for (Index k = 0; k < motion_.positions.rows(); ++k) {
+      efforts.link_jacobian(k * n + at, static_cast<Index>(i)) =
+          -articulated::calc_counterbalance(slope, motion_.positions(k, at));
+    }
+  }
+}
+
+void PlantModel::add_motors(const RobotModel& changed, bool jacobian, Efforts& efforts) const {
+  const auto n = static_cast<Index>(robot_.joint_count());
+  const Index samples = motion_.positions.rows();
+  efforts.motor = efforts.link;
+  for (Index i = 0; i < n; ++i) {
+    const JointPlant& plant = changed.joints[static_cast<std::size_t>(i)].plant;
+    for (Index k = 0; k < samples; ++k) {
+      efforts.motor[k * n + i] += plant.armature * motion_.accelerations(k, i) +
+                                  calc_friction(plant, motion_.rates(k, i)).effort;
+    }
+  }
+  if (!jacobian) {
+    return;
+  }
+  efforts.motor_jacobian = efforts.link_jacobian;
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    const PlantParameter& parameter = parameters_[p];
+    const JointPlant& plant = changed.joints[parameter.joint].plant;
+    const bool splits = has_breakaway(parameters_, parameter.joint);
+    const auto i = static_cast<Index>(parameter.joint);
+    auto column = efforts.motor_jacobian.col(static_cast<Index>(p));
+    for (Index k = 0; k < samples; ++k) {
+      const double v = motion_.rates(k, i);
+      double& slope = column[k * n + i];
+      switch (parameter.kind) {
+        case Kind::viscous:
+          slope = v;
+          break;
+        case Kind::coulomb: {
+          const Friction friction = calc_friction(plant, v);
+          slope = splits ? friction.fall : friction.rise;
+          break;
+        }
+        case Kind::offset:
+          slope = 1;
+          break;
+        case Kind::breakaway: {
+          const Friction friction = calc_friction(plant, v);
+          slope = friction.rise - friction.fall;
+          break;
+        }
+        case Kind::stribeck_rate:
+          slope = calc_friction(plant, v).by_stribeck_rate;
+          break;
+        case Kind::armature:
+          slope = motion_.accelerations(k, i);
+          break;
+        default:
+          break;
+      }
+    }
+  }
+}
+
+PlantModel::Efforts PlantModel::calc(std::span<const double> x, bool jacobian) const {
+  RobotModel changed = robot_;
+  set_parameters(changed, parameters_, x);
+  Efforts efforts;
+  if (jacobian) {
+    efforts.link_jacobian.setZero(regressor_.rows(), static_cast<Index>(parameters_.size()));
+  }
+  add_links(x, jacobian, changed, efforts);
+  add_balance(changed, jacobian, efforts);
+  add_motors(changed, jacobian, efforts);
+  return efforts;
+}
+
+}  // namespace armwright
