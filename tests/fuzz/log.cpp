@@ -59,7 +59,7 @@ void fuzz_log(std::string_view input) {
     check_message(note);
   }
   is_read([&] {
-    const LogSamples samples = condition(log);
+    const LogSamples samples = condition(log, {.cut_s = 0.05});
     require(samples.period_s > 0 && samples.times_s.size() == samples.accelerations.rows(),
             "samples without their times");
     for (const std::string& note : samples.notes) {

@@ -10,72 +10,13 @@
 #include "base/error.hpp"
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
-#include "problems/logs/byte_reader.hpp"
 #include "problems/logs/decompression.hpp"
+#include "problems/logs/joint_message.hpp"
 
 namespace armwright {
 namespace {
 
 constexpr std::size_t kLargestMessage_bytes = std::size_t{16} << 20;
-constexpr std::size_t kMostStatePoints = 6;
-constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
-
-// A message is a sequence of numbers at places that are multiples of their sizes, counted from
-// behind the first four bytes, which name the byte order.
-class CdrReader {
- public:
-  explicit CdrReader(std::string_view message)
-      : reader_(message.substr(std::min<std::size_t>(4, message.size())), message[1] == 0) {}
-
-  template <typename Number>
-  Number read() {
-    align(sizeof(Number));
-    return reader_.read<Number>();
-  }
-  std::string_view read_text() {
-    std::string_view text = reader_.take(read<std::uint32_t>());
-    text.remove_suffix(text.ends_with('\0') ? 1 : 0);
-    return text;
-  }
-  void read_numbers(std::vector<double>& numbers) {
-    const auto count = read<std::uint32_t>();
-    numbers.clear();
-    if (count == 0) {
-      return;
-    }
-    align(sizeof(double));
-    if (count > reader_.left() / sizeof(double)) {
-      reader_.take(std::numeric_limits<std::uint64_t>::max());
-      return;
-    }
-    for (std::uint32_t i = 0; i < count; ++i) {
-      numbers.push_back(reader_.read<double>());
-    }
-  }
-  void read_texts(std::vector<std::string_view>& texts) {
-    texts.clear();
-    for (auto left = read<std::uint32_t>(); left > 0 && reader_.is_good(); --left) {
-      texts.push_back(read_text());
-    }
-  }
-  std::size_t left() const { return reader_.left(); }
-  bool is_good() const { return reader_.is_good(); }
-
- private:
-  void align(std::size_t size) { reader_.take((size - reader_.place() % size) % size); }
-  ByteReader reader_;
-};
-
-struct StatePoint {
-  std::array<std::vector<double>, 4> fields;  // positions, velocities, accelerations, effort
-};
-
-struct JointMessage {
-  std::int64_t stamp_ns = 0;
-  std::vector<std::string_view> names;
-  std::array<StatePoint, kMostStatePoints> points;
-  std::size_t point_count = 0;
-};
 
 // The places of a quantity in a message.
 struct Field {
@@ -195,7 +136,11 @@ class BagLogReader {
         unpacked = decompress_zstd(bytes, kLargestMessage_bytes, locate());
         bytes = unpacked;
       }
-      decode(bytes, message);
+      const std::string fault = is_state_ ? decode_joint_state(bytes, message)
+                                          : decode_controller_state(bytes, point_names_, message);
+      if (!fault.empty()) {
+        fail(fault + fmt::format(" (its topic has the type {})", bag_.topics[topic_].type));
+      }
       if (!find_joints(message)) {
         ++left_out;
         continue;
@@ -238,50 +183,6 @@ class BagLogReader {
                   fmt::format("{}: the definition of {} in the bag has the points {}; possible are "
                               "desired, actual and error, or reference, feedback, error and output",
                               bag_.file, quote_name(recording_.topic), list_quoted(names)));
-    }
-  }
-
-  void decode(std::string_view bytes, JointMessage& message) const {
-    if (bytes.size() < 4 || bytes[0] != 0 || bytes[1] < 0 || bytes[1] > 1) {
-      fail(bytes.size() < 4
-               ? fmt::format("it has {} bytes, which is no message in CDR", bytes.size())
-               : fmt::format(
-                     "it begins with the bytes {:02x} {:02x}; plain CDR begins with 00 00 or "
-                     "00 01",
-                     static_cast<unsigned char>(bytes[0]), static_cast<unsigned char>(bytes[1])));
-    }
-    CdrReader reader(bytes);
-    const auto seconds = reader.read<std::int32_t>();
-    const auto nanoseconds = reader.read<std::uint32_t>();
-    message.stamp_ns = seconds * kNanosecondsPerSecond + nanoseconds;
-    reader.read_text();  // the frame
-    reader.read_texts(message.names);
-    if (is_state_) {
-      message.point_count = 1;
-      for (const std::size_t field : {0, 1, 3}) {
-        reader.read_numbers(message.points[0].fields[field]);
-      }
-    } else {
-      constexpr std::size_t kOldPoints = 3;
-      constexpr std::size_t kSmallestPoint_bytes = 24;
-      message.point_count = point_names_.empty() ? kOldPoints : point_names_.size();
-      for (std::size_t i = 0; i < message.point_count; ++i) {
-        for (auto& field : message.points[i].fields) {
-          reader.read_numbers(field);
-        }
-        reader.read<std::int32_t>();  // the time from the trajectory's start
-        reader.read<std::uint32_t>();
-        // Without a definition: what follows the error is the output.
-        if (point_names_.empty() && i + 1 == kOldPoints && reader.left() >= kSmallestPoint_bytes) {
-          message.point_count = kOldPoints + 1;
-        }
-      }
-    }
-    if (!reader.is_good()) {
-      fail(
-          fmt::format("its {} bytes end within its fields; the message is cut off or of another "
-                      "type than {}",
-                      bytes.size(), bag_.topics[topic_].type));
     }
   }
 

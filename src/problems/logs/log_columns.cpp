@@ -3,43 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "problems/logs/log_units.hpp"
 
 namespace armwright {
 namespace {
-
-enum class UnitKind { angle, length, angle_rate, length_rate, torque, force, time };
-
-struct LogUnit {
-  std::string_view spelling;  // as normalize() makes it
-  UnitKind kind;
-  double factor;  // to SI
-  const char* name;
-};
-
-constexpr double kRadPerDeg = std::numbers::pi / 180;
-
-// Longer spellings stand before those that they end with.
-constexpr LogUnit kUnits[] = {
-    {"rad_per_s", UnitKind::angle_rate, 1, "rad/s"},
-    {"deg_per_s", UnitKind::angle_rate, kRadPerDeg, "deg/s"},
-    {"mm_per_s", UnitKind::length_rate, 1e-3, "mm/s"},
-    {"m_per_s", UnitKind::length_rate, 1, "m/s"},
-    {"rad", UnitKind::angle, 1, "rad"},
-    {"deg", UnitKind::angle, kRadPerDeg, "deg"},
-    {"n_m", UnitKind::torque, 1, "N m"},
-    {"nm", UnitKind::torque, 1, "N m"},
-    {"mm", UnitKind::length, 1e-3, "mm"},
-    {"m", UnitKind::length, 1, "m"},
-    {"n", UnitKind::force, 1, "N"},
-    {"ns", UnitKind::time, 1e-9, "ns"},
-    {"us", UnitKind::time, 1e-6, "us"},
-    {"ms", UnitKind::time, 1e-3, "ms"},
-    {"s", UnitKind::time, 1, "s"},
-};
 
 struct QuantityWord {
   std::string_view word;
@@ -63,54 +33,6 @@ constexpr const char* kOurNames =
 
 constexpr std::string_view kTimeWords[] = {"time", "timestamp"};
 
-// Returns the name in small letters, with one underscore in place of any blanks and marks.
-std::string normalize(std::string_view name) {
-  std::string normal;
-  for (const char c : name) {
-    const bool is_mark = std::string_view(" \t./:-_").find(c) != std::string_view::npos;
-    if (!is_mark) {
-      normal += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    } else if (!normal.empty() && normal.back() != '_') {
-      normal += '_';
-    }
-  }
-  while (normal.ends_with('_')) {
-    normal.pop_back();
-  }
-  return normal;
-}
-
-const LogUnit* find_log_unit(std::string_view text) {
-  std::string spelling = normalize(text);
-  const std::size_t slash = text.find('/');
-  if (slash != std::string_view::npos) {
-    spelling = normalize(text.substr(0, slash)) + "_per_" + normalize(text.substr(slash + 1));
-  }
-  const auto* found = std::ranges::find(kUnits, spelling, &LogUnit::spelling);
-  return found == std::end(kUnits) ? nullptr : found;
-}
-
-UnitKind get_unit_kind(LogQuantity quantity, JointKind joint, bool is_motor) {
-  const bool turns = joint == JointKind::revolute;
-  if (quantity == LogQuantity::velocity) {
-    return turns ? UnitKind::angle_rate : UnitKind::length_rate;
-  }
-  if (quantity == LogQuantity::effort) {
-    return turns || is_motor ? UnitKind::torque : UnitKind::force;
-  }
-  return turns ? UnitKind::angle : UnitKind::length;
-}
-
-std::string list_unit_names(UnitKind kind) {
-  std::vector<std::string> names;
-  for (const LogUnit& unit : kUnits) {
-    if (unit.kind == kind && (names.empty() || names.back() != unit.name)) {
-      names.emplace_back(unit.name);
-    }
-  }
-  return join(names, ", ");
-}
-
 // Cuts "[deg]" or "(deg)" off the end of a column's name and returns "deg"; else returns "".
 std::string cut_bracket(std::string& column) {
   for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
@@ -127,7 +49,7 @@ std::string cut_bracket(std::string& column) {
 // Cuts the unit off the end of a normalized name: returns the name without it for each spelling.
 template <typename Take>
 bool try_suffixes(const std::string& name, const Take& take) {
-  for (const LogUnit& unit : kUnits) {
+  for (const LogUnit& unit : list_log_units()) {
     const std::string suffix = "_" + std::string(unit.spelling);
     if (name.ends_with(suffix) && take(name.substr(0, name.size() - suffix.size()), unit)) {
       return true;
@@ -137,10 +59,6 @@ bool try_suffixes(const std::string& name, const Take& take) {
 }
 
 }  // namespace
-
-bool is_log_unit(std::string_view unit) {
-  return find_log_unit(unit) != nullptr;
-}
 
 LogColumns::LogColumns(const RobotModel& robot, const LogOptions& options)
     : robot_(robot), options_(options) {
@@ -154,7 +72,7 @@ LogColumns::LogColumns(const RobotModel& robot, const LogOptions& options)
                      options.joints.size(), names.size(), list_quoted(names)));
   }
   const auto check_joint = [&](const char* option, const std::string& key) {
-    if (!find_joint(normalize(key))) {
+    if (!find_joint(normalize_name(key))) {
       fail(fmt::format("--{}: the robot has no joint {}; its joints are {}, or 1 to {}", option,
                        quote_name(key), list_quoted(names), names.size()));
     }
@@ -170,7 +88,7 @@ LogColumns::LogColumns(const RobotModel& robot, const LogOptions& options)
   };
   for (const auto* keys : {&options.columns, &options.units}) {
     for (const auto& [key, value] : *keys) {
-      if (!is_word(normalize(key)) && !read_meaning(normalize(key))) {
+      if (!is_word(normalize_name(key)) && !read_meaning(normalize_name(key))) {
         fail(fmt::format("--{}: unknown name {}; the names are {} (joints: {})",
                          keys == &options.units ? "unit" : "column", quote_name(key), kOurNames,
                          list_quoted(names)));
@@ -187,8 +105,8 @@ const std::string& LogColumns::file_name(Eigen::Index joint) const {
 std::optional<Eigen::Index> LogColumns::find_joint(std::string_view text) const {
   for (std::size_t i = 0; i < robot_.joint_count(); ++i) {
     const auto joint = static_cast<Eigen::Index>(i);
-    if (text == std::to_string(i + 1) || text == normalize(robot_.joints[i].name) ||
-        text == normalize(file_name(joint))) {
+    if (text == std::to_string(i + 1) || text == normalize_name(robot_.joints[i].name) ||
+        text == normalize_name(file_name(joint))) {
       return joint;
     }
   }
@@ -216,7 +134,7 @@ std::optional<LogColumns::Meaning> LogColumns::read_meaning(std::string_view tex
 std::optional<LogColumns::Meaning> LogColumns::guess_meaning(const std::string& column) const {
   std::string name = column;
   const std::string unit = cut_bracket(name);
-  name = normalize(name);
+  name = normalize_name(name);
   auto meaning = read_meaning(name);
   if (meaning) {
     meaning->unit = unit;
@@ -239,13 +157,13 @@ std::string LogColumns::find_unit(LogQuantity quantity, Eigen::Index joint) cons
   const auto find_for = [&](LogQuantity of) -> std::string {
     std::string general;
     for (const auto& [key, unit] : options_.units) {
-      const auto meaning = read_meaning(normalize(key));
+      const auto meaning = read_meaning(normalize_name(key));
       if (meaning && meaning->quantity == of && meaning->joint == joint) {
         return unit;
       }
       // Degrees are meant for the joints that turn.
       const LogUnit* known = find_log_unit(unit);
-      if (normalize(key) == kQuantityNames[static_cast<std::size_t>(of)] && known != nullptr &&
+      if (normalize_name(key) == kQuantityNames[static_cast<std::size_t>(of)] && known != nullptr &&
           known->kind == get_unit_kind(of, kind, false)) {
         general = unit;
       }
@@ -261,7 +179,7 @@ std::string LogColumns::find_unit(LogQuantity quantity, Eigen::Index joint) cons
 const double* LogColumns::find_number(const std::map<std::string, double>& numbers,
                                       Eigen::Index joint) const {
   for (const auto& [key, number] : numbers) {
-    if (find_joint(normalize(key)) == joint) {
+    if (find_joint(normalize_name(key)) == joint) {
       return &number;
     }
   }
@@ -343,7 +261,7 @@ std::optional<std::size_t> LogColumns::find_time(const std::vector<std::string>&
     }
     std::string name = header[i];
     std::string found = cut_bracket(name);
-    name = normalize(name);
+    name = normalize_name(name);
     bool fits = is_time(name) || is_mapped;
     if (found.empty()) {
       try_suffixes(name, [&](const std::string& rest, const LogUnit& suffix) {
@@ -410,8 +328,8 @@ LogLayout LogColumns::match(const std::vector<std::string>& header,
                  static_cast<std::size_t>(meaning.joint)];
   };
   for (const auto& [key, column] : options_.columns) {
-    const auto meaning = read_meaning(normalize(key));
-    if (normalize(key) == "time") {
+    const auto meaning = read_meaning(normalize_name(key));
+    if (normalize_name(key) == "time") {
       continue;
     }
     if (!meaning) {
@@ -430,7 +348,7 @@ LogLayout LogColumns::match(const std::vector<std::string>& header,
     std::string name = header[place];
     std::string unit = cut_bracket(name);
     if (unit.empty()) {
-      try_suffixes(normalize(name), [&](const std::string&, const LogUnit& suffix) {
+      try_suffixes(normalize_name(name), [&](const std::string&, const LogUnit& suffix) {
         const JointKind kind = robot_.joints[static_cast<std::size_t>(meaning->joint)].kind;
         if (suffix.kind != get_unit_kind(meaning->quantity, kind, meaning->is_motor)) {
           return false;

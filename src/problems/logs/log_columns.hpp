@@ -62,7 +62,4 @@ class LogColumns {
   const LogOptions& options_;
 };
 
-// Returns whether armwright knows the unit, in any spelling: "deg", "rad/s", "N m".
-bool is_log_unit(std::string_view unit);
-
 }  // namespace armwright

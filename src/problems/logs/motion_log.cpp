@@ -14,6 +14,7 @@
 #include "problems/logs/csv_log.hpp"
 #include "problems/logs/decompression.hpp"
 #include "problems/logs/log_check.hpp"
+#include "problems/logs/log_units.hpp"
 
 namespace armwright {
 namespace {
@@ -86,7 +87,7 @@ void set_log_option(LogOptions& options, std::string_view option, const std::str
   if (option == "column") {
     options.columns[key] = value;
   } else if (option == "unit") {
-    if (!is_log_unit(value)) {
+    if (find_log_unit(value) == nullptr) {
       refuse_option(
           option, key, value,
           "units are rad, deg, m, mm, these per second (deg/s), N m, N, s, ms, us and ns");
