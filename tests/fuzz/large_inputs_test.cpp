@@ -65,6 +65,8 @@ TEST(LargeInputs, LongNames) {
               "an optimizer");
   expect_soon(fuzz_design, "controller = \"" + name + "\"", "a controller");
   expect_soon(fuzz_export_csv, name, "a column");
+  expect_soon(fuzz_log, name + ",time_s,time\n", "a column of a log");
+  expect_soon(fuzz_log, "time_s,position_1\n0," + name, "a number of a log");
   expect_soon(fuzz_records, "{\"format\":\"" + name + "\"}", "a format");
   const std::string value = "\"" + name + "\"";
   expect_soon(fuzz_messages, R"({"type":"description","protocol":)" + value + "}", "a version");
@@ -73,6 +75,28 @@ TEST(LargeInputs, LongNames) {
       fuzz_urdf,
       "<robot name=" + value + "><link name=" + value + "/><link name=" + value + "/></robot>",
       "names");
+}
+
+TEST(LargeInputs, ManyColumnsAndRecordsOfLogs) {
+  expect_soon(fuzz_log, repeat(9'000, "position_1,") + "time\n", "columns");
+  expect_soon(fuzz_log, repeat(200'000, "a,"), "too many columns");
+  const std::string record("\x07\0\0\0\0\0\0\0\0", 9);
+  expect_soon(fuzz_log, std::string("\x89MCAP0\r\n\1\0\0\0\0\0\0\0\0", 17) + repeat(kMiB, record),
+              "records");
+  // A topic of 64 letters per record.
+  expect_soon(fuzz_log,
+              std::string("\x89MCAP0\r\n\1\0\0\0\0\0\0\0\0", 17) +
+                  repeat(40'000,
+                         [](std::size_t i) {
+                           const std::string topic = std::to_string(i) + std::string(64, 't');
+                           std::string content("\0\0\0\0", 4);
+                           content += static_cast<char>(topic.size());
+                           content += std::string(3, '\0') + topic + std::string(8, '\0');
+                           std::string head("\4\0\0\0\0\0\0\0\0", 9);
+                           head[1] = static_cast<char>(content.size());
+                           return head + content;
+                         }),
+              "topics");
 }
 
 TEST(LargeInputs, ManyKeys) {

@@ -92,7 +92,10 @@ std::vector<std::string> read_point_names(const BagTopic& topic) {
     }
     const std::size_t begin = line.find_first_not_of(" \t", blank);
     const std::size_t end = line.find_first_of(" \t\r", begin);
-    names.push_back(begin == std::string::npos ? "" : line.substr(begin, end - begin));
+    constexpr std::size_t kLongestName = 80;
+    names.push_back(begin == std::string::npos
+                        ? ""
+                        : sanitize(line.substr(begin, std::min(end - begin, kLongestName))));
   }
   return names;
 }

@@ -31,6 +31,8 @@ constexpr const char* kOurNames =
     "where "
     "N is the number or the name of a joint";
 
+constexpr std::size_t kLongestShown = 60;  // of a name that the user shall type
+
 constexpr std::string_view kTimeWords[] = {"time", "timestamp"};
 
 // Cuts "[deg]" or "(deg)" off the end of a column's name and returns "deg"; else returns "".
@@ -71,6 +73,17 @@ LogColumns::LogColumns(const RobotModel& robot, const LogOptions& options)
     fail(fmt::format("--joints has {} names, but the robot has {} joints: {}",
                      options.joints.size(), names.size(), list_quoted(names)));
   }
+  // The file's own names go before the robot's, which it may use for other joints.
+  const auto count = static_cast<Eigen::Index>(names.size());
+  for (Eigen::Index j = 0; j < count; ++j) {
+    joints_.try_emplace(std::to_string(j + 1), j);
+  }
+  for (Eigen::Index j = 0; j < count; ++j) {
+    joints_.try_emplace(normalize_name(file_name(j)), j);
+  }
+  for (Eigen::Index j = 0; j < count; ++j) {
+    joints_.try_emplace(normalize_name(names[static_cast<std::size_t>(j)]), j);
+  }
   const auto check_joint = [&](const char* option, const std::string& key) {
     if (!find_joint(normalize_name(key))) {
       fail(fmt::format("--{}: the robot has no joint {}; its joints are {}, or 1 to {}", option,
@@ -103,14 +116,8 @@ const std::string& LogColumns::file_name(Eigen::Index joint) const {
 }
 
 std::optional<Eigen::Index> LogColumns::find_joint(std::string_view text) const {
-  for (std::size_t i = 0; i < robot_.joint_count(); ++i) {
-    const auto joint = static_cast<Eigen::Index>(i);
-    if (text == std::to_string(i + 1) || text == normalize_name(robot_.joints[i].name) ||
-        text == normalize_name(file_name(joint))) {
-      return joint;
-    }
-  }
-  return std::nullopt;
+  const auto found = joints_.find(text);
+  return found == joints_.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::optional<LogColumns::Meaning> LogColumns::read_meaning(std::string_view text) const {
@@ -274,11 +281,11 @@ std::optional<std::size_t> LogColumns::find_time(const std::vector<std::string>&
       });
     }
     if (fits && time) {
-      throw Error(
-          ErrorKind::bad_data,
-          fmt::format("{}: the columns {} and {} both look like the time; say which it "
-                      "is, for example by --column time={}",
-                      where, quote_name(header[*time]), quote_name(header[i]), header[*time]));
+      throw Error(ErrorKind::bad_data,
+                  fmt::format("{}: the columns {} and {} both look like the time; say which it "
+                              "is, for example by --column time={}",
+                              where, quote_name(header[*time]), quote_name(header[i]),
+                              sanitize(header[*time].substr(0, kLongestShown))));
     }
     if (fits) {
       time = i;
@@ -377,7 +384,7 @@ LogLayout LogColumns::match(const std::vector<std::string>& header,
                   fmt::format("{}: the columns {} and {} both look like {}; say which it is, for "
                               "example by --column {}={}",
                               where, quote_name(header[place->place]), quote_name(header[i]), key,
-                              key, header[place->place]));
+                              key, sanitize(header[place->place].substr(0, kLongestShown))));
     }
   }
   std::vector<std::string> missing;

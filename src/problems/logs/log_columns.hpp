@@ -1,6 +1,8 @@
 // Finds out which column of a file is which quantity of which joint, from its name and the options.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -60,6 +62,7 @@ class LogColumns {
 
   const RobotModel& robot_;
   const LogOptions& options_;
+  std::map<std::string, Eigen::Index, std::less<>> joints_;  // by number and by normalized name
 };
 
 }  // namespace armwright

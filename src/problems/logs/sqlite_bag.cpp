@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/read_limit.hpp"
+#include "base/text.hpp"
 #include "problems/logs/bag.hpp"
 #include "problems/logs/byte_reader.hpp"
 #include "problems/logs/recording.hpp"
@@ -90,7 +91,7 @@ class BagDatabase {
       throw Error(ErrorKind::bad_data,
                   fmt::format("{}: SQLite cannot read it: {}; the file is damaged or no bag of "
                               "rosbag2",
-                              file_, sqlite3_errmsg(handle_.get())));
+                              file_, sanitize(sqlite3_errmsg(handle_.get()))));
     }
   }
 

@@ -294,15 +294,18 @@ TEST(BagLog, DamagedMessagesAreNamed) {
     return refuse_bag(make_mcap(kStateTopic, messages, ""));
   };
   const std::string good = make_states()[0].data;
-  EXPECT_EQ(refuse("abc"),
-            "bag, message 42 of '/joint_states': it has 3 bytes, which is no message in CDR (its topic "
-            "has the type sensor_msgs/JointState)");
-  EXPECT_EQ(refuse(std::string("\0\3\0\0abcd", 8)),
-            "bag, message 42 of '/joint_states': it begins with the bytes 00 03; plain CDR begins with "
-            "00 00 or 00 01 (its topic has the type sensor_msgs/JointState)");
-  EXPECT_EQ(refuse(good.substr(0, 150)),
-            "bag, message 42 of '/joint_states': its 150 bytes end within its fields; the message is "
-            "cut off or of another type (its topic has the type sensor_msgs/JointState)");
+  EXPECT_EQ(
+      refuse("abc"),
+      "bag, message 42 of '/joint_states': it has 3 bytes, which is no message in CDR (its topic "
+      "has the type sensor_msgs/JointState)");
+  EXPECT_EQ(
+      refuse(std::string("\0\3\0\0abcd", 8)),
+      "bag, message 42 of '/joint_states': it begins with the bytes 00 03; plain CDR begins with "
+      "00 00 or 00 01 (its topic has the type sensor_msgs/JointState)");
+  EXPECT_EQ(
+      refuse(good.substr(0, 150)),
+      "bag, message 42 of '/joint_states': its 150 bytes end within its fields; the message is "
+      "cut off or of another type (its topic has the type sensor_msgs/JointState)");
   EXPECT_THAT(
       refuse(pack_zstd(good).substr(0, 60)),
       HasSubstr("bag, message 42 of '/joint_states': ends at byte 60, within a frame of zstd"));

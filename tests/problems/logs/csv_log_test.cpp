@@ -97,6 +97,10 @@ TEST(CsvLog, OtherNamesOfJointsAreGivenInTheRobotsOrder) {
   table.rename("position_2_rad", "a2.position");
   table.rename("position_3_m", "a3.position");
   expect_motion(parse_table(table, {.joints = {"a1", "a2", "a3"}}));
+  // Even if they are the robot's names of other joints.
+  table.rename("a1.position", "elbow.position");
+  table.rename("a2.position", "shoulder.position");
+  expect_motion(parse_table(table, {.joints = {"elbow", "shoulder", "a3"}}));
   EXPECT_EQ(usage_error_of([&] {
               parse_table(table, {.joints = {"a1", "a2"}});
             }),
