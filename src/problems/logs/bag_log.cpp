@@ -161,8 +161,8 @@ class BagLogReader {
     }
     if (left_out > 0) {
       recording_.notes.push_back(
-          fmt::format("{} messages of {} have none of the robot's joints and were left out",
-                      left_out, quote_name(recording_.topic)));
+          fmt::format("{} of {} messages of {} have none of the robot's joints and were left out",
+                      left_out, messages.size(), quote_name(recording_.topic)));
     }
     set_times(stamps, log_times);
     return std::move(recording_);

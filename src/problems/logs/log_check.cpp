@@ -81,7 +81,7 @@ double check_times(const Recording& recording) {
     refuse_log(fmt::format(
         "{}: column {} jumps from {:.9g} s to {:.9g} s, which is {:.3g} periods of {}; gaps may "
         "have "
-        "{:g} periods ({} longer ones in this log); split the log there and give both parts",
+        "{:g} periods (longer ones in this log: {}); split the log there and give both parts",
         recording.locate(*first), column, times_s[*first - 1], times_s[*first], gap_s / period_s,
         describe_number(1e3 * period_s, "ms"), kLongestGap_periods, gaps));
   }

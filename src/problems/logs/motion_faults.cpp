@@ -100,8 +100,8 @@ void check_ranges(Checked& checked) {
     outside.cast<int>().maxCoeff(&first);
     checked.faults.push_back(fmt::format(
         "{} is {:.4g} {} in {}, and the range of joint {} is {:.4g} to {:.4g} {} ({} samples are "
-        "outside); columns of other joints, another zero or another direction of the joint look "
-        "like this; --column says which column is which, --joints which joint",
+        "outside); other joints' columns, another zero or direction of the joint and degrees look "
+        "like this; --column says which column is which, --unit position=deg that they are degrees",
         quote_column(checked, LogQuantity::position, j), column[first], get_unit(checked, j),
         checked.recording.name_row(static_cast<std::size_t>(first)), quote_name(joint.name),
         joint.lower, joint.upper, get_unit(checked, j), outside.count()));

@@ -228,7 +228,7 @@ TEST(BagLog, MessagesOfOtherPublishersAreLeftOut) {
   const MotionLog log = parse_bag(make_mcap(kStateTopic, messages, ""));
   expect_states(log);
   EXPECT_THAT(log.notes,
-              ElementsAre("1 messages of '/joint_states' have none of the robot's joints "
+              ElementsAre("1 of 301 messages of '/joint_states' have none of the robot's joints "
                           "and were left out"));
 }
 

@@ -47,7 +47,7 @@ TEST(LogCheck, GapsAreRefused) {
   EXPECT_EQ(
       refuse_table(table),
       "log.csv:302: column 'time_s' jumps from 1.196 s to 1.316 s, which is 30 periods of 4 ms; "
-      "gaps may have 5 periods (1 longer ones in this log); split the log there and give both "
+      "gaps may have 5 periods (longer ones in this log: 1); split the log there and give both "
       "parts");
 }
 
@@ -122,9 +122,9 @@ TEST(LogCheck, PositionsStayInTheJointsRange) {
       refuse_table(table),
       testing::MatchesRegex(
           "log.csv: 'position_2_rad' is -1.03. rad in line [0-9]+, and the range of joint "
-          "'elbow' is -1 to 2 rad \\([0-9]+ samples are outside\\); columns of other joints, "
-          "another zero or another direction of the joint look like this; --column says "
-          "which column is which, --joints which joint"));
+          "'elbow' is -1 to 2 rad \\([0-9]+ samples are outside\\); other joints' columns, "
+          "another zero or direction of the joint and degrees look like this; --column says which "
+          "column is which, --unit position=deg that they are degrees"));
 }
 
 TEST(LogCheck, SwappedPositionsAreFoundByTheirRates) {
