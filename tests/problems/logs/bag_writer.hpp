@@ -1,6 +1,7 @@
 // Writes bags of ROS 2 for tests: messages in CDR, MCAP files and the sqlite3 storage of rosbag2.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <lz4frame.h>
 #include <sqlite3.h>
 #include <zstd.h>
