@@ -21,6 +21,7 @@
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/identification/identification_commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"

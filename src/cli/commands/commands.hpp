@@ -16,7 +16,6 @@ struct Session;
 
 void add_list(CLI::App& app, Session& session);
 void add_optimize(CLI::App& app, Session& session);
-void add_identify(CLI::App& app, Session& session);
 void add_ask(CLI::App& app, Session& session);
 void add_tell(CLI::App& app, Session& session);
 void add_compare(CLI::App& app, Session& session);

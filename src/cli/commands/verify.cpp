@@ -32,7 +32,11 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kUsualCases = 50;
+constexpr std::uint64_t kIdentifiedCases =
+    1000;  // of plants that an identification leaves possible
 constexpr const char* kSubstepsKey = "physics.substeps";
+// Presets for robots whose plant's file has what an identification left uncertain.
+constexpr std::string_view kIdentifiedPlants = "identified";
 constexpr int kMostSubsteps = 1000;  // that the key may have
 
 constexpr const char* kVerifyExamples = R"(Examples:
@@ -47,7 +51,9 @@ physics per control period (physics.substeps); and all masses and inertias of th
 (robot.mass_scale). It also simulates the design in its own engine and time step on perturbed plants, that is, arms that
 differ from the nominal one, with another plant for each case. It uses all shipped perturbations except those that
 weaken motors or change gains. Then it changes the friction, the rotors and the elasticity of the joints. With
---perturbations, the named plants are combined with all engines and substeps. A list that is not given keeps its
+--perturbations, the named plants are combined with all engines and substeps. A robot whose plant was identified
+(--plant) is also simulated on 1000 plants that the identification leaves possible, and at the corners of their
+distribution. A list that is not given keeps its
 default. Each setting is compared with the design's own setting, the problem as it is:
 
   holds   not more cases fail than in its own setting, and the median error is at most 1.1 times its own
@@ -113,7 +119,10 @@ std::string format_text(const VerifiedDesign& verified, const Style& style) {
     table.add_row({row.setting.engine, fmt::format("{}", row.setting.substeps),
                    sanitize(describe_plant(row.setting)), format_mm(row.summary.mean),
                    format_mm(row.summary.median), format_mm(row.summary.worst),
-                   row.fault.empty() ? fmt::format("{}", row.summary.failures) : "-",
+                   !row.fault.empty() ? "-"
+                   : row.summary.cases == verified.cases.count
+                       ? fmt::format("{}", row.summary.failures)
+                       : fmt::format("{} of {}", row.summary.failures, row.summary.cases),
                    row.ratio ? format_significant(*row.ratio, 3) : "-",
                    own ? "its own setting" : to_string(row.verdict)});
   }
@@ -175,6 +184,7 @@ std::string format_json(const VerifiedDesign& verified) {
                 {"mean_error_m", to_json_value(row.summary.mean)},
                 {"median_error_m", to_json_value(row.summary.median)},
                 {"worst_error_m", to_json_value(row.summary.worst)},
+                {"cases", count(row.summary.cases)},
                 {"failures", count(row.summary.failures)},
                 {"without_number", count(row.summary.without_number)},
                 {"median_ratio", to_json_value(row.ratio)},
@@ -237,7 +247,8 @@ std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
                                                           : std::vector<std::string>{};
   }
   if (config.perturbation.changes_anything()) {
-    Perturbation plants = load_perturbation(setting.perturbation, {config.robot, config.start});
+    Perturbation plants =
+        load_perturbation(setting.perturbation, {config.robot, config.start, config.fitted_plant});
     plants.where =
         Perturbation::Where::everywhere;  // also a preset that is meant for training only
     return make_overrides(plants);
@@ -300,7 +311,11 @@ std::string make_replay(const VerifyOptions& options, std::span<const std::strin
 std::vector<std::string> list_usual_plants(const TrackingConfig& config) {
   std::vector<std::string> plants;
   for (const std::string& name : list_configs("perturbations")) {
-    if (!load_perturbation(name, {config.robot, config.start}).changes_design()) {
+    if (!config.fitted_plant && name.starts_with(kIdentifiedPlants)) {
+      continue;
+    }
+    if (!load_perturbation(name, {config.robot, config.start, config.fitted_plant})
+             .changes_design()) {
       plants.push_back(name);
     }
   }
@@ -319,7 +334,7 @@ void check_plant(const std::string& name, const TrackingConfig& config) {
       throw Error(ErrorKind::usage, fmt::format("--perturbations has '{}': {}", name, other->lack));
     }
   } else if (std::ranges::find(kUsualPlants, name) == kUsualPlants.end()) {
-    load_perturbation(name, {config.robot, config.start});
+    load_perturbation(name, {config.robot, config.start, config.fitted_plant});
   }
 }
 
@@ -443,7 +458,17 @@ int run_verify(const VerifyOptions& options, Session& session) {
   ProgressBar bar(options.quiet, {"error", "m"});
   VerifiedDesign verified{design.name, base.name, cases, {}, {}, {}, {}};
   Progress progress;
-  progress.total = cases.count * prepared.size();
+  // Returns the cases of a setting: more of identified plants, as each case has another one.
+  const auto get_cases = [&](const VerifySetting& setting) {
+    ChosenCases its = cases;
+    if (options.cases.cases.empty() && setting.perturbation.starts_with(kIdentifiedPlants)) {
+      its.count = kIdentifiedCases;
+    }
+    return its;
+  };
+  for (const PreparedSetting& one : prepared) {
+    progress.total += get_cases(one.setting).count;
+  }
   for (std::size_t i = 0; i < prepared.size(); ++i) {
     PreparedSetting& one = prepared[i];
     std::optional<ErrorSurvey> survey;
@@ -452,8 +477,8 @@ int run_verify(const VerifyOptions& options, Session& session) {
       if (one.problem) {
         const Perturbation& plants = one.problem->tracking()->config().perturbation;
         verified.loads_kg.back() = plants.load_share ? plants.load_kg : std::nullopt;
-        survey = survey_with_progress(*one.problem->tracking(), design.design, cases, jobs,
-                                      session.stop, bar, progress);
+        survey = survey_with_progress(*one.problem->tracking(), design.design,
+                                      get_cases(one.setting), jobs, session.stop, bar, progress);
       }
     } catch (const Error& error) {
       if (i == 0 || error.kind() == ErrorKind::io) {
@@ -467,7 +492,7 @@ int run_verify(const VerifyOptions& options, Session& session) {
       write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
       return get_stop_code(session.stop.reason());
     }
-    progress.done += cases.count;
+    progress.done += get_cases(one.setting).count;
     if (!survey) {
       verified.rows.push_back(make_missing_row(one.setting, one.fault));
       verified.replays.emplace_back();

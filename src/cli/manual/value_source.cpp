@@ -103,6 +103,7 @@ std::vector<SourceRow> make_argument_rows() {
       {"", "--precision", choose(precision_names())},
       {"", "--simd", choose(list_simd_choices())},
       {"", "--robot", choose_or_file("robots")},
+      {"", "--plant", kFile},
       {"", "PROBLEM", choose_or_file("problems")},
       {"", "DESIGN", choose_or_file("designs", {"start"})},
       {"", "FOLDER", kFolder},

@@ -308,6 +308,11 @@ void OverrideOptions::add_to(CLI::App& command, bool with_training) {
           "An arm of your own, a URDF or MJCF file, or a shipped one (armwright list robots);\n"
           "the same as --set robot.urdf=FILE. Without a problem, the problem is 'robot'")
       ->type_name("FILE");
+  command
+      .add_option("--plant", plant,
+                  "The file of the robot's plant, as armwright identify writes it; the same as\n"
+                  "--set robot.plant=FILE")
+      ->type_name("FILE");
   add_robot_flags(command, base, tip, packages, true);
 }
 
@@ -317,6 +322,10 @@ std::vector<std::string> OverrideOptions::list_flag_overrides() const {
     // The path is absolute, so that a report of the run can be made from any folder.
     const std::filesystem::path file = resolve_config("robots", robot);
     overrides.push_back("robot.urdf=" + quote_toml(std::filesystem::absolute(file).string()));
+  }
+  if (!plant.empty()) {
+    const std::filesystem::path file = resolve_config("plants", plant);
+    overrides.push_back("robot.plant=" + quote_toml(std::filesystem::absolute(file).string()));
   }
   if (!base.empty()) {
     overrides.push_back("robot.base=" + quote_toml(base));

@@ -105,12 +105,13 @@ void add_robot_flags(CLI::App& command, std::string& base, std::string& tip,
 // another form and for a folder that does not exist.
 std::vector<std::string> make_absolute_packages(std::span<const std::string> packages);
 
-// All flags that change the problem: --set, those of the engine, and --robot, --base, --tip and
-// --package, which stand for settings of the table [robot].
+// All flags that change the problem: --set, those of the engine, and --robot, --plant, --base, --tip
+// and --package, which stand for settings of the table [robot].
 struct OverrideOptions {
   std::vector<std::string> set;
   EngineFlags engines;
   std::string robot;
+  std::string plant;
   std::string base;
   std::string tip;
   std::vector<std::string> packages;

@@ -12,6 +12,7 @@
 #include "base/text.hpp"
 #include "problems/config/plant_file.hpp"
 #include "problems/config/problem_readers.hpp"
+#include "problems/identification/effort_check.hpp"
 #include "problems/identification/identification_problem.hpp"
 #include "problems/logs/log_samples.hpp"
 #include "problems/logs/motion_log.hpp"
@@ -101,11 +102,6 @@ LogOptions read_log_options(const ConfigTable& table, const RobotModel& robot) {
       {&kLogUnits, "unit"},
       {&kLogRatios, "gear-ratio"},
       {&kLogSigns, "sign"}};
-  for (const Joint& joint : robot.joints) {
-    if (joint.plant.gear_ratio > 0) {
-      options.gear_ratios[joint.name] = joint.plant.gear_ratio;
-    }
-  }
   for (const auto& [setting, word] : lists) {
     for (const std::string& text : table.get(*setting)) {
       const std::size_t at = text.find('=');
@@ -117,6 +113,12 @@ LogOptions read_log_options(const ConfigTable& table, const RobotModel& robot) {
       } catch (const Error& error) {
         table.refuse(*setting, error.what());
       }
+    }
+  }
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const Joint& joint = robot.joints[i];
+    if (joint.plant.gear_ratio > 0 && !options.gear_ratios.contains(fmt::format("{}", i + 1))) {
+      options.gear_ratios.try_emplace(joint.name, joint.plant.gear_ratio);
     }
   }
   options.joints = table.get(kLogJoints);
@@ -196,7 +198,12 @@ void load_identification(const ConfigTable& table, LoadedProblem& loaded) {
     loaded.sets.test_cases = fitted;
   }
   loaded.sets.training_cases = fitted;
-  loaded.problem = std::make_shared<IdentificationProblem>(config);
+  const auto problem = std::make_shared<IdentificationProblem>(config);
+  const std::vector<std::string> faults = find_effort_faults(*problem);
+  if (!faults.empty()) {
+    throw Error(ErrorKind::bad_data, join(faults, "\n"));
+  }
+  loaded.problem = problem;
 }
 
 }  // namespace armwright

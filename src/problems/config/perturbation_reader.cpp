@@ -105,6 +105,12 @@ const Setting<double> kPlantGainSigma{
     Perturbation{}.gain_sigma,
     "gains are multiplied by exp(this N), N normally distributed"};
 
+const Setting<std::string> kPlantFitted{
+    "fitted", one_of({"none", "draws", "corners"}), kNoDefault,  // in the order of the enum
+    "draws: the parameters in [identification] of the plant's file are drawn from their "
+    "distribution; corners: they lie two standard deviations away along its main axes, in turn "
+    "(default: draws if the plant's file has [identification])"};
+
 std::vector<double> read_joints(const ConfigTable& table,
                                 const Setting<std::vector<double>>& setting, std::size_t joints,
                                 const std::vector<double>& fallback) {
@@ -134,6 +140,10 @@ Interval read_interval(const ConfigTable& table, const Setting<std::vector<doubl
 
 std::string get_place(Perturbation::Where where) {
   return kPlantApplyTo.choices()[static_cast<std::size_t>(where)];
+}
+
+std::string get_name(Perturbation::Fitted fitted) {
+  return kPlantFitted.choices()[static_cast<std::size_t>(fitted)];
 }
 
 // Sets the loads and frictions in `p`.
@@ -190,6 +200,15 @@ Perturbation read_keys(const ConfigTable& table, const PerturbedRobot& robot, Pe
   p.friction_relative = table.get_or(kPlantFriction, p.friction_relative);
   p.armature_relative = table.get_or(kPlantArmature, p.armature_relative);
   p.stiffness_relative = table.get_or(kPlantStiffness, p.stiffness_relative);
+  if (table.has(kPlantFitted)) {
+    p.fitted = static_cast<Perturbation::Fitted>(table.get_choice(kPlantFitted));
+    if (p.fitted != Perturbation::Fitted::none && !robot.fitted) {
+      table.refuse(kPlantFitted,
+                   "the robot's plant must have [identification], as armwright identify writes it "
+                   "(robot.plant, --plant)");
+    }
+    p.fitted_plant = p.fitted == Perturbation::Fitted::none ? nullptr : robot.fitted;
+  }
   return p;
 }
 
@@ -279,7 +298,8 @@ const SettingTable kPerturbationSettings{.key = "perturbation",
                                                       &kPlantRipple,
                                                       &kPlantRippleCycles,
                                                       &kPlantEffortSigma,
-                                                      &kPlantGainSigma}};
+                                                      &kPlantGainSigma,
+                                                      &kPlantFitted}};
 
 Perturbation load_perturbation(const std::string& preset, const PerturbedRobot& robot) {
   const auto file = find_preset(resolve_config("perturbations", preset), robot.model);
@@ -311,7 +331,8 @@ std::vector<std::string> make_overrides(const Perturbation& p) {
       {&kPlantRipple, format_exact(p.torque_ripple_relative)},
       {&kPlantRippleCycles, fmt::format("{}", p.ripple_cycles_per_turn)},
       {&kPlantEffortSigma, format_exact(p.effort_limit_sigma)},
-      {&kPlantGainSigma, format_exact(p.gain_sigma)}};
+      {&kPlantGainSigma, format_exact(p.gain_sigma)},
+      {&kPlantFitted, get_name(p.fitted)}};
   std::vector<std::string> overrides;
   for (const auto& [setting, value] : values) {
     overrides.push_back(fmt::format("{}.{}={}", kPerturbationSettings.key, setting->key, value));
@@ -321,6 +342,9 @@ std::vector<std::string> make_overrides(const Perturbation& p) {
 
 Perturbation read_perturbation(const ConfigTable& table, const PerturbedRobot& robot,
                                LoadedProblem& loaded) {
+  if (robot.fitted && !table.has(kPlantFitted) && table.get(kPlantPreset).empty()) {
+    table.settle(kPlantFitted, get_name(Perturbation::Fitted::draws));
+  }
   Perturbation perturbation;
   if (!table.get(kPlantPreset).empty()) {
     const auto file = find_preset(resolve_named(table, kPlantPreset, "perturbations"), robot.model);

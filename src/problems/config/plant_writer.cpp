@@ -8,7 +8,9 @@
 namespace armwright {
 namespace {
 
-constexpr std::size_t kNumbersPerLine = 8;
+constexpr std::size_t kNumbersPerLine = 6;
+constexpr std::size_t kPointStride = 8;
+constexpr std::size_t kMostPoints = 129;
 // Taking off a payload rounds by less.
 constexpr double kSameBody = 1e-10;
 
@@ -52,17 +54,21 @@ std::string write_joint(const Joint& joint, const Joint& plain) {
     Counterbalance model = own;
     model.correct(1, 0);
     const bool turns = joint.kind == JointKind::revolute;
-    std::vector<double> positions;
-    for (std::size_t i = 0; i < model.efforts.size(); ++i) {
-      const double share = static_cast<double>(i) / static_cast<double>(model.efforts.size() - 1);
+    // Every eighth point: straight lines between them are off by less than 1e-4 of a gas spring.
+    const std::size_t stride = model.efforts.size() > kMostPoints ? kPointStride : 1;
+    const auto last = static_cast<double>(model.efforts.size() - 1);
+    std::vector<double> positions, efforts;
+    for (std::size_t i = 0; i < model.efforts.size(); i += stride) {
+      const double share = static_cast<double>(i) / last;
       positions.push_back(i + 1 == model.efforts.size()
                               ? model.upper
                               : model.lower + share * (model.upper - model.lower));
+      efforts.push_back(model.efforts[i]);
     }
     text += fmt::format("\n[joint.{}.counterbalance]\nscale = {}\nslope = {}\n{} = {}\n{} = {}\n",
                         name, format_exact(own.scale), format_exact(own.slope),
                         turns ? "positions_rad" : "positions_m", write_numbers(positions),
-                        turns ? "efforts_n_m" : "efforts_n", write_numbers(model.efforts));
+                        turns ? "efforts_n_m" : "efforts_n", write_numbers(efforts));
   }
   return text;
 }

@@ -249,6 +249,7 @@ extern const SettingTable kPerturbationSettings;
 struct PerturbedRobot {
   const RobotModel& model;
   const ArmDesign& start;
+  std::shared_ptr<const FittedPlant> fitted = nullptr;  // what the plant's file leaves uncertain
 };
 
 // Reads the preset for the robot by itself: the name of a shipped file, or a path.

@@ -371,6 +371,9 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   config.mass_scale = robot.get(kRobotMassScale);
   ReadRobot read = load_robot(robot, urdf, loaded);
   config.robot = scale_masses(std::move(read.robot), config.mass_scale);
+  if (read.fitted) {
+    config.fitted_plant = std::make_shared<FittedPlant>(*std::move(read.fitted));
+  }
   scale_plants_of(robot, config);
   config.own_effort_limits = robot.get(kRobotDynamics);
 
@@ -396,8 +399,9 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   read_variables(variables, control, urdf, config, loaded);
   config.torque_per_mass_n_m_per_kg =
       table.get_table_or_empty(kMotorSettings).get(kMotorsTorquePerMass);
-  config.perturbation = read_perturbation(table.get_table_or_empty(kPerturbationSettings),
-                                          {config.robot, config.start}, loaded);
+  config.perturbation =
+      read_perturbation(table.get_table_or_empty(kPerturbationSettings),
+                        {config.robot, config.start, config.fitted_plant}, loaded);
   check_elasticity(physics, config, read.plant);
   check_load(task, table.get_table_or_empty(kPerturbationSettings), config);
   check_limits(table.get_table_or_empty(kObjectiveSettings), config);

@@ -79,7 +79,10 @@ Eigen::VectorXd calc_deviations(const std::vector<FittedMotion>& motions,
 }  // namespace
 
 IdentificationProblem::IdentificationProblem(const IdentificationConfig& config)
-    : robot_(config.robot), plain_(config.plain), notes_(config.notes) {
+    : robot_(config.robot),
+      plain_(config.plain),
+      gravity_m_per_s2_(config.gravity_m_per_s2),
+      notes_(config.notes) {
   const auto n = static_cast<Index>(robot_.joint_count());
   std::vector<bool> encoders(robot_.joint_count(), true);
   for (const IdentificationConfig::Log& log : config.fitted) {

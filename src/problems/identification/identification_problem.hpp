@@ -72,6 +72,7 @@ class IdentificationProblem final : public Problem {
 
   const RobotModel& robot() const { return robot_; }
   const RobotModel& plain_robot() const { return plain_; }
+  double gravity_m_per_s2() const { return gravity_m_per_s2_; }
   const std::vector<PlantParameter>& parameters() const { return parameters_; }
   const std::vector<FittedMotion>& fitted() const { return fitted_; }
   // The motions of the test: those that are held back or, without any, those that are fitted.
@@ -101,6 +102,7 @@ class IdentificationProblem final : public Problem {
 
  private:
   RobotModel robot_, plain_;
+  double gravity_m_per_s2_;
   std::vector<PlantParameter> parameters_;
   std::vector<FittedMotion> fitted_, held_back_;
   Eigen::VectorXd sigma_, delta_, priors_;

@@ -38,6 +38,9 @@ bool Perturbation::changes_joints() const {
 }
 
 RobotModel Plant::make_arm(RobotModel nominal) const {
+  if (fitted_plant) {
+    set_parameters(nominal, fitted_plant->parameters, fitted_values);
+  }
   for (std::size_t i = 0; i < nominal.links.size(); ++i) {
     nominal.links[i].inertial.mass_kg *= mass_factors[i];
     nominal.links[i].inertial.inertia_kg_m2 *= mass_factors[i];
@@ -121,6 +124,12 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
     plant.friction_factors.push_back(1 + p.friction_relative * (2 * random.uniform() - 1));
     plant.armature_factors.push_back(1 + p.armature_relative * (2 * random.uniform() - 1));
     plant.stiffness_factors.push_back(1 + p.stiffness_relative * (2 * random.uniform() - 1));
+  }
+  if (p.fitted != Perturbation::Fitted::none) {
+    plant.fitted_plant = p.fitted_plant;
+    plant.fitted_values = p.fitted == Perturbation::Fitted::draws
+                              ? p.fitted_plant->draw(random)
+                              : p.fitted_plant->get_corner(number);
   }
   if (p.load_kg) {
     const auto [lower, upper] = *p.load_kg;

@@ -18,11 +18,15 @@
 //   torque_ripple r        of each joint a = r U, its phase 2 pi U
 //   effort_limit_sigma s   both effort limits of each joint times exp(-s |N|)
 //   gain_sigma s           each gain times exp(s N)
+//   fitted                 the parameters that an identification fitted are drawn from their
+//                          distribution, or are those of one of its corners, in turn
+//                          (sim/identification/fitted_plant.hpp); the other changes come after that
 // Inverse kinematics and targets are those of the nominal arm. The total torque counts the effort
 // limits of the unperturbed design.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,6 +34,7 @@
 #include <vector>
 
 #include "problems/interface/problem.hpp"
+#include "sim/identification/fitted_plant.hpp"
 #include "sim/tracking/design.hpp"
 #include "sim/tracking/plant_variation.hpp"
 #include "sim/tracking/task.hpp"
@@ -62,11 +67,16 @@ struct Perturbation {
   int ripple_cycles_per_turn = 12;
   double effort_limit_sigma = 0;
   double gain_sigma = 0;
+  enum class Fitted { none, draws, corners };
+  Fitted fitted = Fitted::none;
+  std::shared_ptr<const FittedPlant> fitted_plant;  // of the robot; set unless `fitted` is none
 
   bool operator==(const Perturbation&) const = default;
   // Returns true if cases of that role have perturbed plants.
   bool applies_to(CaseRole role) const;
-  bool changes_arm() const { return mass_relative > 0 || load_kg || changes_joints(); }
+  bool changes_arm() const {
+    return mass_relative > 0 || load_kg || changes_joints() || fitted != Fitted::none;
+  }
   bool changes_joints() const;  // a part of JointPlant
   bool changes_loop() const;    // a part of PlantVariation
   bool changes_design() const { return effort_limit_sigma > 0 || gain_sigma > 0; }
@@ -82,6 +92,8 @@ struct Plant {
   std::vector<double> viscous, coulomb;           // added friction, one number per joint
   std::vector<double> friction_factors, armature_factors, stiffness_factors;  // one per joint
   std::optional<PlantVariation> variation;
+  std::shared_ptr<const FittedPlant> fitted_plant;  // null: the nominal parameters
+  std::vector<double> fitted_values;                // one per parameter of `fitted_plant`
   // The problem's own arm and task with this plant's masses and load. Nothing if both are nominal.
   // TrackingInputs sets it.
   std::optional<TrackingSetup> setup;

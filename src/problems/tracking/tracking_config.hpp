@@ -49,6 +49,7 @@ struct TrackingConfig {
   std::string name;
   std::string summary;
   RobotModel robot;
+  std::shared_ptr<const FittedPlant> fitted_plant;  // what the plant's file leaves uncertain
   double mass_scale = 1;  // the factor that all masses were multiplied by when the robot was loaded
   PlantScales plant_scales;  // likewise, of the robot's joints
   TrackingTask task;
