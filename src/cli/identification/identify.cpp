@@ -18,7 +18,6 @@
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
-#include "problems/config/plant_file.hpp"
 #include "problems/identification/identification_problem.hpp"
 #include "study/identification/fit_report.hpp"
 #include "study/run/run.hpp"
@@ -41,6 +40,7 @@ plant.toml, which robots take as their plant, and identification.json with inter
 Logs of --validate are held back: they only judge. docs/identification.md explains formats, groups and figures.)";
 
 constexpr const char* kIdentifyProblem = "identify";
+constexpr std::size_t kMostJson_bytes = std::size_t{64} << 20;
 constexpr const char* kIdentifyOptimizer = "ceres:lm";
 
 struct IdentifyOptions : PlanOptions {
@@ -165,8 +165,7 @@ int run_identify(IdentifyOptions options, Session& session) {
   request.jobs = parse_jobs(options.jobs);
   apply_time_limit(options.time_limit, session.stop);
   request.plan = options.make_plan();
-  const auto* problem =
-      dynamic_cast<const IdentificationProblem*>(request.plan.problem.problem.get());
+  const auto* problem = find_identification(*request.plan.problem.problem);
   request.folder = options.folder.choose(make_run_name(request.plan));
   request.command_line = session.command_line;
   if (!options.quiet) {
@@ -189,23 +188,13 @@ int run_identify(IdentifyOptions options, Session& session) {
   }
   const std::vector<double>& x = result->judged[*result->winner].candidate.x;
   const FitAnalysis analysis = analyse_fit(*problem, x);
-  FittedPlant fitted = make_fitted_plant(*problem, x, analysis);
-  for (const auto& [name, hash] : request.plan.problem.input_hashes) {
-    if (std::ranges::find(analysis.fitted.logs, name) != analysis.fitted.logs.end()) {
-      fitted.logs.push_back(name + " " + hash);
-    }
+  if (options.json) {
+    write_stdout(read_file(request.folder / kIdentificationFile, kMostJson_bytes));
+    return get_result_code(*result);
   }
-  const std::vector<std::string> doubts = list_doubts(analysis, result->end_reason != "budget");
-  write_file_atomically(
-      request.folder / "plant.toml",
-      write_plant(make_fitted_robot(*problem, x), problem->plain_robot(), fitted,
-                  fmt::format("# The plant of {}, identified by armwright from {}.\n",
-                              sanitize(problem->robot().name), join(analysis.fitted.logs, ", "))));
-  const std::string report = to_json(*problem, x, analysis);
-  write_file_atomically(request.folder / "identification.json", report);
-  write_stdout(options.json ? report
-                            : describe_fit(analysis, doubts, request.folder,
-                                           make_style(Stream::out, session.color)));
+  const std::vector<std::string> doubts = list_doubts(analysis, !result->ended_by_budget());
+  write_stdout(
+      describe_fit(analysis, doubts, request.folder, make_style(Stream::out, session.color)));
   return get_result_code(*result);
 }
 

@@ -311,4 +311,8 @@ CaseRecord IdentificationProblem::record_case(std::span<const double> x, const C
   return record;
 }
 
+const IdentificationProblem* find_identification(const Problem& problem) {
+  return dynamic_cast<const IdentificationProblem*>(&problem);
+}
+
 }  // namespace armwright

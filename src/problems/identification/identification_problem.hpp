@@ -111,4 +111,7 @@ class IdentificationProblem final : public Problem {
   ProblemDescription description_;
 };
 
+// Returns the problem if it is an identification, else null.
+const IdentificationProblem* find_identification(const Problem& problem);
+
 }  // namespace armwright

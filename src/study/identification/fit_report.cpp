@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
+#include "problems/config/plant_file.hpp"
 
 namespace armwright {
 namespace {
@@ -62,8 +64,10 @@ json write_motion(const FittedMotion& motion, std::span<const double> own,
 
 }  // namespace
 
-std::string to_json(const IdentificationProblem& problem, std::span<const double> x,
-                    const FitAnalysis& analysis) {
+namespace {
+
+json make_report(const IdentificationProblem& problem, std::span<const double> x,
+                 const FitAnalysis& analysis, bool is_converged) {
   json parameters = json::array();
   for (const FittedParameter& parameter : analysis.parameters) {
     parameters.push_back({{"name", parameter.name},
@@ -94,6 +98,7 @@ std::string to_json(const IdentificationProblem& problem, std::span<const double
     motions.push_back(write_motion(motion, own, x));
   }
   json all = {{"robot", problem.robot().name},
+              {"doubts", list_doubts(analysis, is_converged)},
               {"parameters", parameters},
               {"undetermined", analysis.undetermined},
               {"correlations", correlations},
@@ -103,7 +108,27 @@ std::string to_json(const IdentificationProblem& problem, std::span<const double
   if (problem.has_held_back()) {
     all["held_back"] = write_set(analysis.judged);
   }
-  return all.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+  return all;
+}
+
+}  // namespace
+
+IdentificationFiles make_identification_files(
+    const IdentificationProblem& problem, std::span<const double> x,
+    const std::map<std::string, std::string>& input_hashes, bool is_converged) {
+  const FitAnalysis analysis = analyse_fit(problem, x);
+  FittedPlant fitted = make_fitted_plant(problem, x, analysis);
+  for (const std::string& log : analysis.fitted.logs) {
+    const auto hash = input_hashes.find(std::filesystem::path(log).filename().string());
+    fitted.logs.push_back(hash == input_hashes.end() ? log : log + " " + hash->second);
+  }
+  return {write_plant(make_fitted_robot(problem, x), problem.plain_robot(), fitted,
+                      fmt::format("# The plant of {}, identified by armwright from {}.\n",
+                                  sanitize(problem.robot().name),
+                                  sanitize(join(analysis.fitted.logs, ", ")))),
+          make_report(problem, x, analysis, is_converged)
+                  .dump(1, ' ', false, json::error_handler_t::replace) +
+              "\n"};
 }
 
 std::vector<std::string> list_doubts(const FitAnalysis& analysis, bool is_converged) {

@@ -1,16 +1,26 @@
-// The files that an identification leaves in its run's folder beside those of every run.
+// The files that an identification leaves in its run's folder beside those of every run:
+//   plant.toml           the robot's plant and what is uncertain (problems/config/plant_file.hpp)
+//   identification.json  parameters with intervals, errors per joint, correlations, what is not
+//                        determined, and the efforts of each motion (at most 1000 samples)
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "study/identification/fit_analysis.hpp"
 
 namespace armwright {
 
-// Returns identification.json: parameters with intervals, errors per joint, correlations, what is
-// not determined, and the residuals of each motion (thinned to at most 1000 samples).
-std::string to_json(const IdentificationProblem& problem, std::span<const double> x,
-                    const FitAnalysis& analysis);
+inline constexpr const char* kPlantFile = "plant.toml";
+inline constexpr const char* kIdentificationFile = "identification.json";
+
+struct IdentificationFiles {
+  std::string plant, identification;
+};
+// `input_hashes` are those of the problem, `is_converged` whether the optimizer ended by itself.
+IdentificationFiles make_identification_files(
+    const IdentificationProblem& problem, std::span<const double> x,
+    const std::map<std::string, std::string>& input_hashes, bool is_converged);
 
 // Returns what a user should know before anything else, one sentence each: parameters at the end of
 // their box, an optimizer that ended early, a fit that is no better than what was there. Empty if

@@ -13,7 +13,9 @@
 #include "base/text.hpp"
 #include "problems/config/design_file.hpp"
 #include "problems/config/values_file.hpp"
+#include "problems/identification/identification_problem.hpp"
 #include "problems/user/user_problem.hpp"
+#include "study/identification/fit_report.hpp"
 #include "study/run/run.hpp"
 #include "study/run/winner_record.hpp"
 
@@ -222,6 +224,10 @@ bool are_derived_files_there(const RunFolder& folder, const RunPlan& plan, Deriv
   if (result.winner && is_own && !are_record_files_there(folder, plan)) {
     return false;
   }
+  if (result.winner && find_identification(*plan.problem.problem) != nullptr &&
+      !(is_there(kPlantFile) && is_there(kIdentificationFile))) {
+    return false;
+  }
   return !result.winner || !result.tracking ||
          (is_there("winner.toml") && is_there("winner-trajectory.csv"));
 }
@@ -265,6 +271,14 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
     if (all && has_record(plan)) {
       write_record_files(files, plan, x);
     }
+  }
+  if (const auto* identification = find_identification(*plan.problem.problem);
+      result.winner && all && identification != nullptr) {
+    const IdentificationFiles made =
+        make_identification_files(*identification, result.judged[*result.winner].candidate.x,
+                                  plan.problem.input_hashes, !result.ended_by_budget());
+    write_file_atomically(files, kPlantFile, made.plant);
+    write_file_atomically(files, kIdentificationFile, made.identification);
   }
   before_last();
   write_file_atomically(files, "result.json", to_json(result));

@@ -23,6 +23,7 @@
 #include "problems/config/problem_loader.hpp"
 #include "problems/interface/schedule.hpp"
 #include "sim/simd/simd_level.hpp"
+#include "study/identification/fit_report.hpp"
 
 namespace armwright {
 namespace {
@@ -252,9 +253,16 @@ void RunFolder::check_writable() const {
 }
 
 const std::vector<std::string>& derived_file_names() {
-  static const std::vector<std::string> names = {
-      "result.json",           "winner.toml",       "front.csv",      "convergence.csv",
-      "winner-trajectory.csv", "winner-record.csv", "results.sqlite", "cell.json"};
+  static const std::vector<std::string> names = {"result.json",
+                                                 "winner.toml",
+                                                 "front.csv",
+                                                 "convergence.csv",
+                                                 "winner-trajectory.csv",
+                                                 "winner-record.csv",
+                                                 "results.sqlite",
+                                                 "cell.json",
+                                                 kPlantFile,
+                                                 kIdentificationFile};
   return names;
 }
 

@@ -40,6 +40,7 @@ struct RunResult {
   std::string optimizer;
   std::uint64_t seed = 1;
   std::string end_reason;  // "budget", "optimizer finished" or "optimizer failed"
+  bool ended_by_budget() const { return end_reason == "budget"; }
   // If the optimizer finished: why, in its own words, and how many more evaluations the budget would
   // have paid for. Empty and 0 if that is not known, and in results of runs that version 1.0 began.
   std::string end_detail;
