@@ -152,12 +152,12 @@ TEST(BagLog, BothLayoutsOfAControllersStateAreRead) {
       "std_msgs/Header header\nstring[] joint_names\ntrajectory_msgs/JointTrajectoryPoint desired\n"
       "trajectory_msgs/JointTrajectoryPoint actual\ntrajectory_msgs/JointTrajectoryPoint error # "
       "redundant\n";
-  struct Row {
+  struct StateRow {
     bool is_new;
     std::string definition;
   };
-  for (const Row& row :
-       {Row{false, old_definition}, Row{true, kNewDefinition}, Row{false, ""}, Row{true, ""}}) {
+  for (const StateRow& row :
+       {StateRow{false, old_definition}, StateRow{true, kNewDefinition}, StateRow{false, ""}, StateRow{true, ""}}) {
     SCOPED_TRACE(row.definition);
     const MotionLog log = parse_bag(make_mcap(make_controller_topic(row.definition),
                                               make_controller_states(row.is_new, true), "zstd"));
