@@ -326,6 +326,7 @@ void add_all_commands(CLI::App& app, Session& session) {
   add_list(app, session);
   add_optimize(app, session);
   add_identify(app, session);
+  add_excite(app, session);
   add_ask(app, session);
   add_tell(app, session);
   add_compare(app, session);

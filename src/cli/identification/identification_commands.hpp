@@ -1,4 +1,4 @@
-// The subcommands that find a robot's plant in logs, as those of cli/commands/commands.hpp.
+// The subcommands that find a robot's plant in logs and motions worth recording, as those of cli/commands/commands.hpp.
 #pragma once
 
 namespace CLI {
@@ -10,5 +10,6 @@ namespace armwright {
 struct Session;
 
 void add_identify(CLI::App& app, Session& session);
+void add_excite(CLI::App& app, Session& session);
 
 }  // namespace armwright

@@ -9,6 +9,7 @@
 #include "cli/manual/manual_formats.hpp"
 #include "cli/manual/plugin_templates.hpp"
 #include "problems/config/config_files.hpp"
+#include "problems/identification/excitation_problem.hpp"
 #include "report/exchange/export.hpp"
 #include "sim/simd/simd_level.hpp"
 
@@ -63,6 +64,7 @@ std::vector<SourceRow> make_argument_rows() {
   return {
       {"list", "KIND", choose(list_kind_names())},
       {"list", "NAME", choose_from(kListOfFirstArgument)},
+      {"excite", "--criterion", choose(excitation_criterion_names())},
       {"compare", "STUDY", choose_or_file("studies")},
       {"compare", "--preset", choose_from("studies")},
       {"compare", "--problems", separate(choose_or_file("problems"))},
@@ -126,6 +128,9 @@ std::vector<SourceRow> make_value_rows() {
   for (const char* name : {"N", "ID", "KEY", "KEY=VALUE", "NAME=VALUE", "NUMBERS", "DURATION",
                            "CASES", "KIND", "KIND:K", "LABEL", "LINK", "NAME=DIR", "SET:NUMBER",
                            "TIME,MEMORY", "WIDTHxHEIGHT", "WORD"}) {
+    rows.push_back({"", name, kFree});
+  }
+  for (const char* name : {"GROUPS", "HZ", "KG", "SECONDS", "X,Y,Z"}) {
     rows.push_back({"", name, kFree});
   }
   return rows;

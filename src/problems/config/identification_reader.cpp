@@ -24,10 +24,24 @@ const Setting<std::vector<std::string>> kLogFiles{
     "logs", kNoDefault, "for the kind identification: logs that are fitted, beside this file"};
 const Setting<std::vector<std::string>> kLogsHeldBack{"validate", std::vector<std::string>{},
                                                       "logs that are held back and judge the fit"};
+}  // namespace
+
 const Setting<std::vector<std::string>> kFitGroups{
     "fit", std::vector<std::string>{"friction", "armature"},
     "what is fitted: friction, stribeck, armature, payload, counterbalance, "
     "counterbalance_slope, stiffness, delay, inertial"};
+const Setting<double> kPayloadMass{"payload_kg",
+                                   {.lower = 0, .upper = 1e5},
+                                   0,
+                                   "payload that the robot carried as far as is known; replaces "
+                                   "that of the plant's file; 0: none"};
+const Setting<std::vector<double>> kPayloadCom{"payload_com_m",
+                                               {.lower = -100, .upper = 100},
+                                               std::vector<double>{0, 0, 0},
+                                               "centre of mass of that payload in the tip's frame"};
+
+namespace {
+
 const Setting<std::vector<std::string>> kLogColumns{
     "columns", std::vector<std::string>{},
     "columns of the logs, each OURS=THEIRS: position_1=q1, time=t"};
@@ -51,15 +65,6 @@ const Setting<double> kLogCutoff{
     "positions and efforts are filtered below this frequency, without phase"};
 const Setting<double> kLogCut{
     "cut_s", {.lower = 0, .upper = 1000}, 0.24, "time that is cut at both ends of a log"};
-const Setting<double> kPayloadMass{"payload_kg",
-                                   {.lower = 0, .upper = 1e5},
-                                   0,
-                                   "payload that the robot carried as far as is known; replaces "
-                                   "that of the plant's file; 0: none"};
-const Setting<std::vector<double>> kPayloadCom{"payload_com_m",
-                                               {.lower = -100, .upper = 100},
-                                               std::vector<double>{0, 0, 0},
-                                               "centre of mass of that payload in the tip's frame"};
 
 constexpr std::size_t kLogLimit_bytes = std::size_t{2} << 30;
 
@@ -69,31 +74,6 @@ const Setting<double> kPriorScale{"prior_scale",
                                   "factor on how far the robot's files may be off (armature 30 %, "
                                   "counterbalance 0.2, inertia); 0: "
                                   "they count for nothing"};
-
-std::vector<FitGroup> read_groups(const ConfigTable& table) {
-  std::vector<FitGroup> groups;
-  for (const std::string& name : table.get(kFitGroups)) {
-    const auto at = std::ranges::find(fit_group_names(), name);
-    if (at == fit_group_names().end()) {
-      table.refuse(kFitGroups, fmt::format("'{}' cannot be fitted; each must be one of {}",
-                                           sanitize(name), join(fit_group_names(), ", ")));
-    }
-    groups.push_back(static_cast<FitGroup>(at - fit_group_names().begin()));
-  }
-  const auto has = [&](FitGroup group) { return std::ranges::find(groups, group) != groups.end(); };
-  if (groups.empty()) {
-    table.refuse(kFitGroups, "it must name at least one group");
-  }
-  if (has(FitGroup::inertial) && has(FitGroup::payload)) {
-    table.refuse(kFitGroups,
-                 "inertial includes the payload, which is a part of the last link; give one of the "
-                 "two");
-  }
-  if (has(FitGroup::stribeck) && !has(FitGroup::friction)) {
-    table.refuse(kFitGroups, "stribeck needs friction");
-  }
-  return groups;
-}
 
 LogOptions read_log_options(const ConfigTable& table, const RobotModel& robot) {
   LogOptions options;
@@ -162,6 +142,38 @@ const SettingTable kIdentificationSettings{
                  &kLogSigns, &kLogJoints, &kLogTopic, &kLogCutoff, &kLogCut, &kPayloadMass,
                  &kPayloadCom, &kPriorScale}};
 
+std::vector<FitGroup> read_groups(const ConfigTable& table) {
+  std::vector<FitGroup> groups;
+  for (const std::string& name : table.get(kFitGroups)) {
+    const auto at = std::ranges::find(fit_group_names(), name);
+    if (at == fit_group_names().end()) {
+      table.refuse(kFitGroups, fmt::format("'{}' cannot be fitted; each must be one of {}",
+                                           sanitize(name), join(fit_group_names(), ", ")));
+    }
+    groups.push_back(static_cast<FitGroup>(at - fit_group_names().begin()));
+  }
+  const auto has = [&](FitGroup group) { return std::ranges::find(groups, group) != groups.end(); };
+  if (groups.empty()) {
+    table.refuse(kFitGroups, "it must name at least one group");
+  }
+  if (has(FitGroup::inertial) && has(FitGroup::payload)) {
+    table.refuse(kFitGroups,
+                 "inertial includes the payload, which is a part of the last link; give one of the "
+                 "two");
+  }
+  if (has(FitGroup::stribeck) && !has(FitGroup::friction)) {
+    table.refuse(kFitGroups, "stribeck needs friction");
+  }
+  return groups;
+}
+
+void read_payload(const ConfigTable& table, RobotModel& robot) {
+  if (table.has(kPayloadMass)) {
+    set_payload(robot, {table.get(kPayloadMass), read_vector(table, kPayloadCom, "x, y and z in m"),
+                        Eigen::Matrix3d::Zero()});
+  }
+}
+
 void load_identification(const ConfigTable& table, LoadedProblem& loaded) {
   IdentificationConfig config;
   config.name = loaded.name;
@@ -170,11 +182,7 @@ void load_identification(const ConfigTable& table, LoadedProblem& loaded) {
   config.robot = std::move(read.robot);
   config.plain = std::move(read.plain);
   const ConfigTable its = table.get_table(kIdentificationSettings);
-  if (its.has(kPayloadMass)) {
-    set_payload(config.robot,
-                {its.get(kPayloadMass), read_vector(its, kPayloadCom, "x, y and z in m"),
-                 Eigen::Matrix3d::Zero()});
-  }
+  read_payload(its, config.robot);
   config.gravity_m_per_s2 =
       read_physics(table.get_table_or_empty(kPhysicsSettings)).gravity_m_per_s2;
   config.groups = read_groups(its);

@@ -22,12 +22,15 @@ const Setting<std::string> kTitle{"title", kNoDefault,
                                   "one line, for lists and reports (default: the name)"};
 const Setting<std::string> kDescription{"description", "", "some lines more"};
 const Setting<std::string> kProblemKind{
-    "kind", one_of({"tracking", "analytic", "program", "command", "external", "identification"}),
+    "kind",
+    one_of(
+        {"tracking", "analytic", "program", "command", "external", "identification", "excitation"}),
     kNoDefault,
     "tracking: a robot follows a moving target; analytic: a function with a known optimum; "
     "program: a problem of your own that a program computes; command: one that a command line "
     "computes, case by case; external: one whose results you hand over (armwright ask); "
-    "identification: a robot's parameters are found in recorded motions"};
+    "identification: a robot's parameters are found in recorded motions; excitation: a motion is "
+    "found that tells them"};
 const Setting<std::string> kProblemName{
     "name", kNoDefault,
     "name of the problem and of its runs' folders (default: the file's name); {robot} in it stands "
@@ -280,7 +283,8 @@ const SettingTable& problem_settings() {
                  &kPerturbationSettings, &kSweepSettings,         &kWinnerSettings,
                  &kFunctionSettings,     &kProgramSettings,       &kCommandSettings,
                  &kUserVariableSettings, &kUserObjectiveSettings, &kUserConstraintSettings,
-                 &kUserMetricSettings,   &kUserCasesSettings,     &kIdentificationSettings}};
+                 &kUserMetricSettings,   &kUserCasesSettings,     &kIdentificationSettings,
+                 &kExcitationSettings}};
   return settings;
 }
 
@@ -307,7 +311,7 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
   table.get(kDescription);
   const std::string kind = table.get(kProblemKind);
   CaseSets usual;
-  if (kind == "analytic") {  // every case of a function is the same
+  if (kind == "analytic" || kind == "excitation") {  // every case is the same
     usual.validation_cases = 1;
     usual.test_cases = 1;
   }
@@ -347,6 +351,10 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
     sets.settle(kSetsTestCases, loaded.sets.test_cases);
     loaded.schedule = {};
     loaded.schedule.cases = static_cast<int>(loaded.sets.training_cases);
+  } else if (kind == "excitation") {
+    load_excitation(table, loaded);
+    table.settle(kProblemName, loaded.name);
+    settle_program(table, loaded);
   } else {
     load_tracking(table, engines, loaded);
     if (table.get_or(kProblemName, "").find(kRobotInName) != std::string::npos) {

@@ -112,6 +112,19 @@ extern const SettingTable kIdentificationSettings;
 // Sets the problem, its cases and the hashes of its inputs. Throws Error{bad_data} for a log that
 // cannot be read or fails a check.
 void load_identification(const ConfigTable& table, LoadedProblem& loaded);
+extern const Setting<std::vector<std::string>> kFitGroups;
+std::vector<FitGroup> read_groups(const ConfigTable& table);
+extern const Setting<double> kPayloadMass;
+extern const Setting<std::vector<double>> kPayloadCom;
+// Gives the robot the payload that the table states, if it does.
+void read_payload(const ConfigTable& table, RobotModel& robot);
+
+// excitation_reader.cpp: [excitation], a motion that tells a robot's parameters
+
+extern const SettingTable kExcitationSettings;
+// Sets the problem, its single case and the hashes of its inputs. Throws Error{bad_data} for a robot
+// whose limits do not say what motions are allowed.
+void load_excitation(const ConfigTable& table, LoadedProblem& loaded);
 
 // engine_reader.cpp: [physics]
 

@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "problems/identification/linear_start.hpp"
+#include "problems/identification/residual_memory.hpp"
 #include "problems/interface/add_outcome.hpp"
+#include "problems/logs/zero_phase_filter.hpp"
 
 namespace armwright {
 namespace {
@@ -43,6 +45,16 @@ Shifted shift(const Eigen::MatrixXd& efforts, Index sample, Index joint, double 
   return shifted;
 }
 
+// Returns the filter of the logs, at the samples' period.
+PlantModel::Smoothing make_smoothing(double period_s, double cutoff_hz) {
+  if (cutoff_hz <= 0) {
+    return {};
+  }
+  return [filter = ZeroPhaseFilter(cutoff_hz, period_s)](const Eigen::VectorXd& signal) {
+    return filter.apply(signal);
+  };
+}
+
 FittedMotion make_motion(const IdentificationConfig::Log& log, const IdentificationConfig& config,
                          const std::vector<PlantParameter>& parameters) {
   const LogSamples& samples = log.samples;
@@ -54,7 +66,8 @@ FittedMotion make_motion(const IdentificationConfig::Log& log, const Identificat
           .period_s = samples.period_s,
           .cutoff_hz = config.cutoff_hz,
           .model = PlantModel(config.robot, parameters, config.gravity_m_per_s2,
-                              {samples.positions, samples.rates, samples.accelerations}),
+                              {samples.positions, samples.rates, samples.accelerations},
+                              make_smoothing(samples.period_s, config.cutoff_hz)),
           .efforts = samples.efforts,
           .deflections = std::move(deflections)};
 }
@@ -125,16 +138,18 @@ IdentificationProblem::IdentificationProblem(const IdentificationConfig& config)
     for (const DecisionVariable& variable : description_.variables) {
       start.push_back(variable.start);
     }
-    double square = 0, count = 0;
+    double square = 0, samples = 0;
     for (const FittedMotion& motion : fitted_) {
-      const Residuals residuals = calc_residuals(motion, start, false);
-      square += residuals.values.squaredNorm();
-      count += static_cast<double>(motion.efforts.rows()) * motion.period_s;
+      const Eigen::VectorXd values = calc_residuals(motion, start, false).values;
+      for (Index i = 0; i < n; ++i) {
+        const Eigen::VectorXd own = values(Eigen::seqN(i, motion.efforts.rows(), n));
+        square += own.squaredNorm() * count_dependent({own.data(), own.data() + own.size()},
+                                                      motion.period_s, motion.cutoff_hz);
+      }
+      samples += static_cast<double>(motion.efforts.rows());
     }
-    // Residuals of a model that is not perfect repeat over about this time.
-    constexpr double kMemory_s = 0.5;
-    prior_weight_ = std::sqrt(square / static_cast<double>(fitted_.size()) * kMemory_s / count /
-                              static_cast<double>(n));
+    prior_weight_ =
+        std::sqrt(square / static_cast<double>(fitted_.size()) / samples / static_cast<double>(n));
     set_linear_start(*this, description_.variables);
   } else {
     priors_.setZero(static_cast<Index>(parameters_.size()));

@@ -40,22 +40,24 @@ LinkNumbers differentiate_payload(const RobotModel& robot, int part) {
   return numbers;
 }
 
-// The friction of a joint at one rate, and its derivatives.
-struct Friction {
-  double effort = 0;
-  double rise = 0, fall = 0;  // tanh(v / v_w), tanh(v / v_s)
-  double by_stribeck_rate = 0;
+// The dry friction of a joint, one number per sample, and its derivatives.
+struct DryFriction {
+  Eigen::VectorXd rise, fall;  // tanh(v / v_w), tanh(v / v_s)
+  Eigen::VectorXd by_stribeck_rate;
 };
 
-Friction calc_friction(const JointPlant& plant, double v) {
-  Friction friction;
-  friction.rise = std::tanh(v / plant.transition_rate);
-  friction.fall = std::tanh(v / plant.stribeck_rate);
-  friction.effort = plant.offset + plant.viscous * v +
-                    (plant.coulomb + plant.stribeck) * friction.rise -
-                    plant.stribeck * friction.fall;
-  friction.by_stribeck_rate = plant.stribeck * (1 - friction.fall * friction.fall) * v /
-                              (plant.stribeck_rate * plant.stribeck_rate);
+DryFriction calc_dry_friction(const JointPlant& plant, const Eigen::VectorXd& rates,
+                              const PlantModel::Smoothing& smooth) {
+  DryFriction friction;
+  friction.rise = (rates / plant.transition_rate).array().tanh();
+  friction.fall = (rates / plant.stribeck_rate).array().tanh();
+  friction.by_stribeck_rate = plant.stribeck / (plant.stribeck_rate * plant.stribeck_rate) *
+                              rates.cwiseProduct((1 - friction.fall.array().square()).matrix());
+  for (Eigen::VectorXd* part : {&friction.rise, &friction.fall, &friction.by_stribeck_rate}) {
+    if (smooth) {
+      *part = smooth(*part);
+    }
+  }
   return friction;
 }
 
@@ -71,8 +73,11 @@ bool has_breakaway(std::span<const PlantParameter> parameters, std::size_t joint
 }  // namespace
 
 PlantModel::PlantModel(const RobotModel& robot, std::vector<PlantParameter> parameters,
-                       double gravity_m_per_s2, const JointMotion& motion)
-    : robot_(robot), parameters_(std::move(parameters)), motion_(motion) {
+                       double gravity_m_per_s2, const JointMotion& motion, Smoothing smooth)
+    : robot_(robot),
+      parameters_(std::move(parameters)),
+      motion_(motion),
+      smooth_(std::move(smooth)) {
   for (Link& link : robot_.links) {
     link.visuals.clear();
   }
@@ -147,50 +152,45 @@ void PlantModel::add_balance(const RobotModel& changed, bool jacobian, Efforts& 
 
 void PlantModel::add_motors(const RobotModel& changed, bool jacobian, Efforts& efforts) const {
   const auto n = static_cast<Index>(robot_.joint_count());
-  const Index samples = motion_.positions.rows();
   efforts.motor = efforts.link;
+  if (jacobian) {
+    efforts.motor_jacobian = efforts.link_jacobian;
+  }
   for (Index i = 0; i < n; ++i) {
-    const JointPlant& plant = changed.joints[static_cast<std::size_t>(i)].plant;
-    for (Index k = 0; k < samples; ++k) {
-      efforts.motor[k * n + i] += plant.armature * motion_.accelerations(k, i) +
-                                  calc_friction(plant, motion_.rates(k, i)).effort;
-    }
-  }
-  if (!jacobian) {
-    return;
-  }
-  efforts.motor_jacobian = efforts.link_jacobian;
-  for (std::size_t p = 0; p < parameters_.size(); ++p) {
-    const PlantParameter& parameter = parameters_[p];
-    const JointPlant& plant = changed.joints[parameter.joint].plant;
-    const bool splits = has_breakaway(parameters_, parameter.joint);
-    const auto i = static_cast<Index>(parameter.joint);
-    auto column = efforts.motor_jacobian.col(static_cast<Index>(p));
-    for (Index k = 0; k < samples; ++k) {
-      const double v = motion_.rates(k, i);
-      double& slope = column[k * n + i];
-      switch (parameter.kind) {
+    const auto joint = static_cast<std::size_t>(i);
+    const JointPlant& plant = changed.joints[joint].plant;
+    const Eigen::VectorXd rates = motion_.rates.col(i),
+                          accelerations = motion_.accelerations.col(i);
+    const DryFriction friction = calc_dry_friction(plant, rates, smooth_);
+    const auto rows = Eigen::seqN(i, rates.size(), n);
+    efforts.motor(rows) += plant.armature * accelerations + plant.viscous * rates +
+                           (plant.coulomb + plant.stribeck) * friction.rise -
+                           plant.stribeck * friction.fall +
+                           Eigen::VectorXd::Constant(rates.size(), plant.offset);
+    const bool splits = has_breakaway(parameters_, joint);
+    for (std::size_t p = 0; jacobian && p < parameters_.size(); ++p) {
+      if (parameters_[p].joint != joint) {
+        continue;
+      }
+      const auto column = static_cast<Index>(p);
+      switch (parameters_[p].kind) {
         case Kind::viscous:
-          slope = v;
+          efforts.motor_jacobian(rows, column) = rates;
           break;
-        case Kind::coulomb: {
-          const Friction friction = calc_friction(plant, v);
-          slope = splits ? friction.fall : friction.rise;
+        case Kind::coulomb:
+          efforts.motor_jacobian(rows, column) = splits ? friction.fall : friction.rise;
           break;
-        }
         case Kind::offset:
-          slope = 1;
+          efforts.motor_jacobian(rows, column).setOnes();
           break;
-        case Kind::breakaway: {
-          const Friction friction = calc_friction(plant, v);
-          slope = friction.rise - friction.fall;
+        case Kind::breakaway:
+          efforts.motor_jacobian(rows, column) = friction.rise - friction.fall;
           break;
-        }
         case Kind::stribeck_rate:
-          slope = calc_friction(plant, v).by_stribeck_rate;
+          efforts.motor_jacobian(rows, column) = friction.by_stribeck_rate;
           break;
         case Kind::armature:
-          slope = motion_.accelerations(k, i);
+          efforts.motor_jacobian(rows, column) = accelerations;
           break;
         default:
           break;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -22,9 +23,14 @@ struct JointMotion {
 
 class PlantModel {
  public:
-  // Parameters that are not in the list keep the robot's values.
+  // Returns a signal, one number per sample, as a filter leaves it.
+  using Smoothing = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
+
+  // Parameters that are not in the list keep the robot's values. `smooth` is the filter that the
+  // recorded efforts have passed. Dry friction, which steps where a joint turns round, passes it, too.
+  // Everything else is smooth, since positions passed the filter before they were differentiated.
   PlantModel(const RobotModel& robot, std::vector<PlantParameter> parameters,
-             double gravity_m_per_s2, const JointMotion& motion);
+             double gravity_m_per_s2, const JointMotion& motion, Smoothing smooth = {});
 
   // Efforts in N m or N, in the order of samples and, within a sample, of joints.
   struct Efforts {
@@ -48,6 +54,7 @@ class PlantModel {
   RobotModel robot_;  // without visuals
   std::vector<PlantParameter> parameters_;
   JointMotion motion_;
+  Smoothing smooth_;
   Eigen::MatrixXd regressor_;  // Y of all samples, one below the other
 };
 

@@ -8,9 +8,9 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "base/text.hpp"
+#include "problems/identification/residual_memory.hpp"
 
 namespace armwright {
 namespace {
@@ -18,8 +18,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double kConfidence = 0.95;
-// A channel's sum over autocorrelations ends at the latest after this share of a motion.
-constexpr double kLongestMemory = 0.2;
 constexpr int kWhitenessLags = 10;
 // Of the normal matrix with columns of length 1: smaller eigenvalues are rounding.
 constexpr double kNoInformation = 1e-11;
@@ -29,9 +27,6 @@ constexpr double kPart = 0.05;
 constexpr double kWide = 0.5;
 constexpr double kStrong = 0.9;
 constexpr double kAtBound = 1e-6;
-// The power gain of white noise by the filter of log_samples.hpp, forwards and backwards, is that of
-// an ideal one with this share of its cut-off: the integral of 1 / (1 + x^8)^2 from 0 on.
-const double kNoiseBand = 7.0 / 8 * (std::numbers::pi / 8) / std::sin(std::numbers::pi / 8);
 
 // The residuals of one channel of one motion, evenly spaced in time.
 struct Channel {
@@ -69,31 +64,8 @@ std::vector<double> pick(const Eigen::VectorXd& values, const Channel& channel) 
   return some;
 }
 
-// Returns the autocorrelation at `lag` of numbers whose mean is 0.
-double calc_correlation(const std::vector<double>& values, std::size_t lag) {
-  double sum = 0, squares = 0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    squares += values[k] * values[k];
-    sum += k >= lag ? values[k] * values[k - lag] : 0;
-  }
-  return squares > 0 ? sum / squares : 0;
-}
-
-// Returns how many samples tell as much as an independent one.
 double count_dependent(const std::vector<double>& values, const Channel& channel) {
-  const double filtered =
-      channel.cutoff_hz > 0 ? 1 / (2 * kNoiseBand * channel.cutoff_hz * channel.period_s) : 1;
-  double sum = 1;
-  const auto longest =
-      static_cast<std::size_t>(kLongestMemory * static_cast<double>(values.size()));
-  for (std::size_t lag = 1; lag < longest; ++lag) {
-    const double correlation = calc_correlation(values, lag);
-    if (correlation <= 0) {
-      break;
-    }
-    sum += 2 * correlation;
-  }
-  return std::max({1.0, filtered, sum});
+  return armwright::count_dependent(values, channel.period_s, channel.cutoff_hz);
 }
 
 // Returns J^T R J, R being the residuals' correlations: those at a lag count less the longer it is, so

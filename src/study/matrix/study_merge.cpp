@@ -55,11 +55,11 @@ class CellImport {
       find(cell);
     }
     if (!refusals_.empty()) {
-      constexpr std::size_t kMostShown = 20;
+      constexpr std::size_t kMostListed = 20;
       const std::size_t count = refusals_.size();
-      if (count > kMostShown) {
-        refusals_.resize(kMostShown);
-        refusals_.push_back(fmt::format("and {} more", count - kMostShown));
+      if (count > kMostListed) {
+        refusals_.resize(kMostListed);
+        refusals_.push_back(fmt::format("and {} more", count - kMostListed));
       }
       throw Error(ErrorKind::bad_data,
                   fmt::format("nothing is merged: the folders hold cells that contradict each "

@@ -1,0 +1,191 @@
+#include "study/identification/excitation_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/random.hpp"
+#include "base/text.hpp"
+
+namespace armwright {
+namespace {
+
+using Eigen::Index;
+using nlohmann::json;
+
+const char* get_unit(const Joint& joint, const char* angle, const char* length) {
+  return joint.kind == JointKind::revolute ? angle : length;
+}
+
+// Returns "position_1_rad,position_2_rad" for "position".
+std::string write_heads(const RobotModel& robot, const char* what, const char* angle,
+                        const char* length) {
+  std::string heads;
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    heads += fmt::format(",{}_{}_{}", what, i + 1, get_unit(robot.joints[i], angle, length));
+  }
+  return heads;
+}
+
+std::string write_numbers(const Eigen::MatrixXd& rows, Index row, const char* separator) {
+  std::string text;
+  for (Index i = 0; i < rows.cols(); ++i) {
+    text += fmt::format("{}{:.9g}", i == 0 ? "" : separator, rows(row, i));
+  }
+  return text;
+}
+
+// Returns numbers as YAML, which takes those without a point for integers.
+std::string write_list(const Eigen::MatrixXd& rows, Index row) {
+  std::string text;
+  for (Index i = 0; i < rows.cols(); ++i) {
+    text += fmt::format("{}{:.6f}", i == 0 ? "" : ", ", rows(row, i));
+  }
+  return "[" + text + "]";
+}
+
+}  // namespace
+
+Index count_samples(const ExcitationProblem& problem, double rate_hz) {
+  return static_cast<Index>(std::round(problem.config().duration_s * rate_hz)) + 1;
+}
+
+Eigen::VectorXd calc_effort_noise(const Eigen::MatrixXd& efforts) {
+  return kEffortNoise * (efforts.colwise().maxCoeff() - efforts.colwise().minCoeff()).transpose();
+}
+
+std::string write_motion(const ExcitationProblem& problem, const AssessedMotion& motion) {
+  const RobotModel& robot = problem.config().robot;
+  std::string text = "time_s" + write_heads(robot, "position", "rad", "m") +
+                     write_heads(robot, "velocity", "rad_per_s", "m_per_s") +
+                     write_heads(robot, "acceleration", "rad_per_s2", "m_per_s2") +
+                     write_heads(robot, "expected_effort", "n_m", "n") + "\n";
+  for (Index k = 0; k < motion.times_s.size(); ++k) {
+    text += fmt::format("{:.9g}", motion.times_s[k]);
+    for (const Eigen::MatrixXd* rows : {&motion.motion.positions, &motion.motion.rates,
+                                        &motion.motion.accelerations, &motion.efforts}) {
+      text += "," + write_numbers(*rows, k, ",");
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string write_trajectory(const ExcitationProblem& problem, std::span<const double> x) {
+  const ExcitationConfig& config = problem.config();
+  const AssessedMotion motion = problem.assess(
+      x, count_samples(problem, kTrajectoryPoints * config.harmonics / config.period_s));
+  std::string text =
+      "# A trajectory_msgs/msg/JointTrajectory. The robot must stand at the first point before.\n"
+      "joint_names:\n";
+  for (const Joint& joint : config.robot.joints) {
+    text += "  - " + json(joint.name).dump() + "\n";
+  }
+  text += "points:\n";
+  for (Index k = 0; k < motion.times_s.size(); ++k) {
+    const auto time_ns = static_cast<std::int64_t>(std::llround(1e9 * motion.times_s[k]));
+    text += fmt::format(
+        "  - positions: {}\n    velocities: {}\n    accelerations: {}\n"
+        "    time_from_start: {{sec: {}, nanosec: {}}}\n",
+        write_list(motion.motion.positions, k), write_list(motion.motion.rates, k),
+        write_list(motion.motion.accelerations, k), time_ns / 1'000'000'000,
+        time_ns % 1'000'000'000);
+  }
+  return text;
+}
+
+std::string write_simulated_log(const RobotModel& robot, double gravity_m_per_s2,
+                                const AssessedMotion& motion, std::uint64_t noise_seed) {
+  const Index samples = motion.times_s.size();
+  const auto n = static_cast<Index>(robot.joint_count());
+  const PlantModel::Efforts model =
+      PlantModel(robot, {}, gravity_m_per_s2, motion.motion).calc({}, false);
+  const auto to_rows = [&](const Eigen::VectorXd& efforts) {
+    return Eigen::MatrixXd(
+        Eigen::Map<const Eigen::MatrixXd>(efforts.data(), n, samples).transpose());
+  };
+  Eigen::MatrixXd efforts = to_rows(model.motor), positions = motion.motion.positions;
+  const Eigen::MatrixXd links = to_rows(model.link);
+  const Eigen::VectorXd noise = calc_effort_noise(efforts);
+  std::vector<Index> elastic;
+  std::string text = "time_s" + write_heads(robot, "position", "rad", "m") +
+                     write_heads(robot, "effort", "n_m", "n");
+  for (Index i = 0; i < n; ++i) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(i)];
+    if (joint.plant.is_elastic()) {
+      elastic.push_back(i);
+      positions.col(i) += links.col(i) / joint.plant.stiffness;
+      text += fmt::format(",link_position_{}_{}", i + 1, get_unit(joint, "rad", "m"));
+    }
+  }
+  text += "\n";
+  RandomStream random("excitation/noise", noise_seed);
+  for (Index k = 0; k < samples; ++k) {
+    for (Index i = 0; i < n; ++i) {
+      positions(k, i) += kPositionNoise * random.normal();
+      efforts(k, i) += noise[i] * random.normal();
+    }
+    text += fmt::format("{:.9g},{},{}", motion.times_s[k], write_numbers(positions, k, ","),
+                        write_numbers(efforts, k, ","));
+    for (const Index i : elastic) {
+      text +=
+          fmt::format(",{:.9g}", motion.motion.positions(k, i) + kPositionNoise * random.normal());
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::vector<ExpectedParameter> list_expected(const ExcitationProblem& problem,
+                                             const AssessedMotion& motion) {
+  const Eigen::VectorXd errors =
+      problem.calc_standard_errors(motion, calc_effort_noise(motion.efforts));
+  std::vector<ExpectedParameter> expected;
+  for (std::size_t i = 0; i < problem.parameters().size(); ++i) {
+    const PlantParameter& parameter = problem.parameters()[i];
+    expected.push_back({parameter.name, parameter.unit, problem.own_values()[i],
+                        errors[static_cast<Index>(i)], problem.can_tell(i)});
+  }
+  return expected;
+}
+
+std::string to_json(const ExcitationProblem& problem, const AssessedMotion& start,
+                    const AssessedMotion& motion, double shrinking) {
+  const RobotModel& robot = problem.config().robot;
+  json parameters = json::array(), joints = json::array();
+  for (const ExpectedParameter& parameter : list_expected(problem, motion)) {
+    parameters.push_back({{"name", parameter.name},
+                          {"unit", parameter.unit},
+                          {"value", parameter.value},
+                          {"standard_error", parameter.standard_error},
+                          {"told", parameter.is_told}});
+  }
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    const auto at = static_cast<Index>(i);
+    json joint = {{"joint", robot.joints[i].name},
+                  {"position_share", motion.positions[at]},
+                  {"speed_share", motion.speeds[at]},
+                  {"effort_share", motion.efforts_share[at]}};
+    if (motion.accelerations.size() > 0) {
+      joint["acceleration_share"] = motion.accelerations[at];
+    }
+    joints.push_back(std::move(joint));
+  }
+  return json({{"robot", robot.name},
+               {"criterion",
+                excitation_criterion_names()[static_cast<std::size_t>(problem.config().criterion)]},
+               {"condition_before", start.condition},
+               {"condition", motion.condition},
+               {"log_det_before", start.log_det},
+               {"log_det", motion.log_det},
+               {"rank", problem.rank()},
+               {"amplitude_factor", shrinking},
+               {"samples", motion.times_s.size()},
+               {"joints", joints},
+               {"parameters", parameters}})
+             .dump(2) +
+         "\n";
+}
+
+}  // namespace armwright
