@@ -45,6 +45,18 @@ function make_function() {
   run_program('report', run, '--out', join(kFolder, 'function.html'), '--quiet');
 }
 
+// What two recordings of a robot tell of its plant.
+function make_identification() {
+  const run = join(kFolder, 'identification');
+  const logs = join(import.meta.dirname ?? new URL('.', import.meta.url).pathname, '../../configs/logs/kr300');
+  run_program(
+    ...['identify', join(logs, 'trajectory-A.csv'), '--validate', join(logs, 'trajectory-B.csv'), '--robot', 'kr300.urdf'],
+    ...['--fit', 'friction,stribeck,armature,payload,counterbalance', '--payload', '200', '--payload-com', '0,0,-0.05'],
+    ...['--out', run, '--quiet'],
+  );
+  run_program('report', run, '--out', join(kFolder, 'identification.html'), '--quiet');
+}
+
 // A run of a user's problem, which records signals and files of its winner.
 function make_own() {
   const run = join(kFolder, 'own');
@@ -92,6 +104,7 @@ if (process.argv[2] !== undefined) {
   make_front();
   make_function();
   make_own();
+  make_identification();
   make_study();
   make_comparisons();
   make_reproduction();

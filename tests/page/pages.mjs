@@ -6,7 +6,7 @@ import { cpSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { kFolder, run_program } from './make_pages.mjs';
 
-export const kReports = ['run', 'study', 'front', 'reproduction', 'function', 'own', 'comparison', 'study-comparison'];
+export const kReports = ['run', 'study', 'front', 'reproduction', 'function', 'own', 'identification', 'comparison', 'study-comparison'];
 
 // Starts `armwright watch` on a copy of the study that lacks a cell, so that the study is under way. Each test
 // gives a `name` of its own. Returns the address of the page and the function that ends the program.

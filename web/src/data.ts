@@ -9,6 +9,7 @@ import type { StudyData } from './data/study';
 
 export type * from './data/arm';
 export type * from './data/comparison';
+export type * from './data/identification';
 export type * from './data/reproduction';
 export type * from './data/run';
 export type * from './data/study';

@@ -219,3 +219,34 @@ test('a motion that broke off has no error afterwards and says why', () => {
   assert.equal(replay.describe_end(motion, one_case, 1, 0.01), '');
   assert.equal(replay.describe_end(motion, one_case, 2, 0.01), 'diverged at 0.02 s: the tip is 2 m off');
 });
+
+test('a motion that a robot recorded has no target and no errors, and its picture holds the whole path', () => {
+  const { robot, postures } = robots[0];
+  const [first, ...others] = postures;
+  const motion = {
+    design: 'recorded',
+    status: 'ok',
+    reason: '',
+    steps: others.length,
+    mean_error_m: null,
+    point_error_m: [],
+    q: pack(others.flatMap((one) => one.q)),
+    effort: pack([]),
+    error_m: pack([]),
+  };
+  const nothing = pack([]);
+  const one_case = {
+    ...{ id: 'log-1', label: 'a.csv, fitted', set: 'logs', number: 0, points_m: [], segments: [], steps: others.length },
+    ...{ target_m: nothing, target_q: nothing, start_q: first.q, motions: [motion] },
+  };
+  const set = { id: 'recorded', title: '', robot: 0, task: { control_period_s: 0.04 }, designs: [], cases: [one_case] };
+  const scenario = replay.make_scenario(set, one_case, robot);
+  assert.equal(scenario.is_recorded, true);
+  assert.equal(replay.find_target(scenario, 1), null);
+  const [track] = scenario.tracks;
+  assert.equal(track.count, others.length);
+  assert.ok(track.errors_m.every((error) => error === 0));
+  assert.equal(scenario.places_m.length, postures.length);
+  postures.forEach((one, i) => assert_near(scenario.places_m[i], one.tip, 1e-5));
+  assert_near(replay.find_q(scenario, track, 0), first.q, 1e-6);
+});

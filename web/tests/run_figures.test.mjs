@@ -13,6 +13,7 @@ const {
   kDark,
   kLight,
   make_histogram,
+  make_identification_data,
   make_page,
   make_replay_set,
   make_reproduction_data,
@@ -28,6 +29,7 @@ const {
   export { make_histogram } from './src/figures/test_errors';
   export { read_signals } from './src/figures/winner';
   export { group_variables } from './src/figures/variables';
+  export { make_identification_data } from './tests/fixtures/identification';
   export { make_replay_set, make_reproduction_data, make_run_data } from './tests/fixtures/pages';
 `);
 
@@ -77,7 +79,7 @@ function check_table(table, name) {
   }
 }
 
-const kPages = { run: make_run_data, reproduction: make_reproduction_data };
+const kPages = { run: make_run_data, identification: make_identification_data, reproduction: make_reproduction_data };
 
 for (const [kind, make_data] of Object.entries(kPages)) {
   test(`${kind}: every figure draws in both looks and with all choices, and has its numbers`, () => {

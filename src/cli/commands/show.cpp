@@ -15,6 +15,7 @@
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
+#include "cli/views/identification_view.hpp"
 #include "cli/views/result_view.hpp"
 #include "cli/views/study_view.hpp"
 #include "study/analysis/final_check.hpp"
@@ -22,6 +23,7 @@
 #include "study/journal/journal.hpp"
 #include "study/run/json_values.hpp"
 #include "study/run/run.hpp"
+#include "study/run/run_folder.hpp"
 
 namespace armwright {
 namespace {
@@ -97,6 +99,19 @@ int show_study(const ShowOptions& options, const Session& session) {
   return exit_code::kDone;
 }
 
+// Prints what identify has printed.
+void show_identification(const std::filesystem::path& folder, const Style& style) {
+  const auto file = folder / kIdentificationFile;
+  try {
+    write_stdout(describe_identification(
+        json::parse(read_checked_json(file, kIdentificationLimit_bytes)), folder, style));
+  } catch (const json::exception& error) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: is not an identification that armwright wrote ({})",
+                            sanitize(file.string()), describe_json_error(error.what())));
+  }
+}
+
 int run_show(const ShowOptions& options, const Session& session) {
   const std::filesystem::path folder = options.folder;
   if (is_study_folder(folder)) {
@@ -114,6 +129,8 @@ int run_show(const ShowOptions& options, const Session& session) {
     const RunResult result = load_result(folder);
     if (options.json) {
       write_stdout(to_json(result));
+    } else if (path_exists(folder / kIdentificationFile)) {
+      show_identification(folder, make_style(Stream::out, session.color));
     } else {
       const Style style = make_style(Stream::out, session.color);
       write_stdout(describe_result(result, folder, style) + "\n" + describe_judged(result, style));

@@ -13,15 +13,15 @@
 #include "cli/commands/plan_options.hpp"
 #include "cli/identification/identification_commands.hpp"
 #include "cli/terminal/arguments.hpp"
-#include "cli/terminal/format.hpp"
 #include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
-#include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
+#include "cli/views/identification_view.hpp"
 #include "problems/identification/identification_problem.hpp"
 #include "study/identification/fit_report.hpp"
 #include "study/run/run.hpp"
 #include "study/run/run_folder.hpp"
+#include "study/run/run_lock.hpp"
 #include "study/run/run_observer.hpp"
 
 namespace armwright {
@@ -36,7 +36,8 @@ constexpr const char* kIdentifyExamples = R"(Examples:
 
 The logs are read, checked, filtered below --cutoff without phase, and differentiated. The parameters start at those of
 linear least squares on the inverse dynamics; then the optimizer searches (default: ceres:lm). The folder gets
-plant.toml, which robots take as their plant, and identification.json with intervals, correlations and residuals.
+plant.toml, which robots take as their plant, and identification.json with intervals, correlations and residuals;
+'armwright show' prints them again, and 'armwright report' makes a page with the arm moving as recorded.
 Logs of --validate are held back: they only judge. docs/identification.md explains formats, groups and figures.)";
 
 constexpr const char* kIdentifyProblem = "identify";
@@ -102,58 +103,6 @@ void add_settings(IdentifyOptions& options) {
   }
 }
 
-std::string describe_set(const FitSet& set, const std::string& title, const Style& style) {
-  Table table({{"joint", false},
-               {"torque itself"},
-               {"before"},
-               {"after"},
-               {"unit", false},
-               {"residuals", false}});
-  for (const JointFit& joint : set.joints) {
-    table.add_row({sanitize(joint.joint), format_significant(joint.deviation, 4),
-                   format_significant(joint.before, 4), format_significant(joint.after, 4),
-                   joint.unit,
-                   joint.whiteness_p < 0.05
-                       ? fmt::format("not white: they repeat over {:.2g} s", joint.independent_s)
-                       : "white"});
-  }
-  return "\n" + style.bold(fmt::format("{}: {}", title, join(set.logs, ", "))) + "\n" +
-         table.format(style, 2) +
-         fmt::format("  mean error, in deviations of the torque: {:.4g} -> {:.4g} ({:.3g} times)\n",
-                     set.before, set.after, set.after / set.before);
-}
-
-std::string describe_fit(const FitAnalysis& analysis, const std::vector<std::string>& doubts,
-                         const std::filesystem::path& folder, const Style& style) {
-  std::string text;
-  for (const std::string& doubt : doubts) {
-    text += style.bold("doubt: ") + sanitize(doubt) + "\n";
-  }
-  Table table({{"parameter", false},
-               {"before"},
-               {"value"},
-               {"95 % interval"},
-               {"unit", false},
-               {"", false}});
-  for (const FittedParameter& parameter : analysis.parameters) {
-    table.add_row({sanitize(parameter.name), format_significant(parameter.before, 4),
-                   format_significant(parameter.value, 5),
-                   fmt::format("{:.4g} to {:.4g}", parameter.lower, parameter.upper),
-                   parameter.unit, parameter.is_determined ? "" : "cannot be told"});
-  }
-  text += table.format(style, 0);
-  for (const std::string& sentence : analysis.undetermined) {
-    text += "note: " + sanitize(sentence) + "\n";
-  }
-  text += describe_set(analysis.fitted, "Fitted", style);
-  if (!analysis.judged.joints.empty()) {
-    text += describe_set(analysis.judged, "Held back", style);
-  }
-  return text + "\n" + style.bold("Files in " + sanitize(folder.string())) +
-         "\n  plant.toml           the robot's plant, with what is uncertain (--plant)\n"
-         "  identification.json  parameters, intervals, correlations, efforts and residuals\n";
-}
-
 int run_identify(IdentifyOptions options, Session& session) {
   add_settings(options);
   options.problem = kIdentifyProblem;
@@ -186,15 +135,13 @@ int run_identify(IdentifyOptions options, Session& session) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("no set of parameters could be evaluated: {}", result->first_failure));
   }
-  const std::vector<double>& x = result->judged[*result->winner].candidate.x;
-  const FitAnalysis analysis = analyse_fit(*problem, x);
+  const std::string report = read_file(request.folder / kIdentificationFile, kMostJson_bytes);
   if (options.json) {
-    write_stdout(read_file(request.folder / kIdentificationFile, kMostJson_bytes));
+    write_stdout(report);
     return get_result_code(*result);
   }
-  const std::vector<std::string> doubts = list_doubts(analysis, !result->ended_by_budget());
-  write_stdout(
-      describe_fit(analysis, doubts, request.folder, make_style(Stream::out, session.color)));
+  const Style style = make_style(Stream::out, session.color);
+  write_stdout(describe_identification(nlohmann::json::parse(report), request.folder, style));
   return get_result_code(*result);
 }
 

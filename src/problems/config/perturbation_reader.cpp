@@ -342,11 +342,9 @@ std::vector<std::string> make_overrides(const Perturbation& p) {
 
 Perturbation read_perturbation(const ConfigTable& table, const PerturbedRobot& robot,
                                LoadedProblem& loaded) {
-  if (robot.fitted && !table.has(kPlantFitted) && table.get(kPlantPreset).empty()) {
-    table.settle(kPlantFitted, get_name(Perturbation::Fitted::draws));
-  }
   Perturbation perturbation;
-  if (!table.get(kPlantPreset).empty()) {
+  const bool has_preset = !table.get(kPlantPreset).empty();
+  if (has_preset) {
     const auto file = find_preset(resolve_named(table, kPlantPreset, "perturbations"), robot.model);
     const ConfigTable preset = ConfigTable::load(kPerturbationSettings, file);
     perturbation = load_preset(preset, robot);
@@ -355,7 +353,13 @@ Perturbation read_perturbation(const ConfigTable& table, const PerturbedRobot& r
     replace_other_forms(table, perturbation);
     add_input(loaded, file);
   }
-  return read_keys(table, robot, perturbation);
+  perturbation = read_keys(table, robot, perturbation);
+  if (robot.fitted && !table.has(kPlantFitted) && !has_preset) {
+    perturbation.fitted = Perturbation::Fitted::draws;
+    perturbation.fitted_plant = robot.fitted;
+    table.settle(kPlantFitted, get_name(perturbation.fitted));
+  }
+  return perturbation;
 }
 
 void check_load(const ConfigTable& task, const ConfigTable& table, const TrackingConfig& config) {

@@ -49,6 +49,9 @@ void rename_old_keys(nlohmann::json& resolved) {
 
 // Gives keys that version 1.0 did not have the value that says what it did.
 void add_old_values(nlohmann::json& resolved) {
+  if (resolved.value("kind", "") != "tracking") {
+    return;
+  }
   if (resolved.contains("robot") && !resolved["task"].contains("solver")) {
     resolved["task"]["solver"] = "scalar";
   }

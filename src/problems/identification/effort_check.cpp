@@ -91,7 +91,15 @@ std::vector<std::string> find_effort_faults(const IdentificationProblem& problem
     const Index n = motion.efforts.cols();
     const Eigen::MatrixXd model = calc_own_efforts(motion.model, n, own);
     const std::string log = sanitize(motion.name);
-    for (Index i = 0; i < n; ++i) {
+    const auto efforts = find_swapped(problem, motion, model, false);
+    if (efforts) {
+      const auto [i, k] = *efforts;
+      faults.push_back(fmt::format(
+          "{}: the efforts of joints '{}' and '{}' are swapped: exchanged, they are much nearer to "
+          "those that the motion needs; name their columns with --column",
+          log, name(i), name(k)));
+    }
+    for (Index i = 0; i < n && !efforts; ++i) {
       const double correlation = correlate(motion.efforts.col(i), model.col(i));
       if (correlation < kOpposite) {
         faults.push_back(fmt::format(
@@ -99,14 +107,6 @@ std::vector<std::string> find_effort_faults(const IdentificationProblem& problem
             "(correlation {:.2f}); if the sensor counts the other way, give --sign {}=-1",
             log, name(i), correlation, name(i)));
       }
-    }
-    const auto efforts = find_swapped(problem, motion, model, false);
-    if (efforts && faults.empty()) {
-      const auto [i, k] = *efforts;
-      faults.push_back(fmt::format(
-          "{}: the efforts of joints '{}' and '{}' are swapped: exchanged, they are much nearer to "
-          "those that the motion needs; name their columns with --column",
-          log, name(i), name(k)));
     }
     if (faults.empty()) {
       if (const auto swapped = find_swapped(problem, motion, model, true)) {

@@ -138,18 +138,22 @@ IdentificationProblem::IdentificationProblem(const IdentificationConfig& config)
     for (const DecisionVariable& variable : description_.variables) {
       start.push_back(variable.start);
     }
-    double square = 0, samples = 0;
+    double square = 0, samples = 0, independent = 0;
     for (const FittedMotion& motion : fitted_) {
       const Eigen::VectorXd values = calc_residuals(motion, start, false).values;
       for (Index i = 0; i < n; ++i) {
         const Eigen::VectorXd own = values(Eigen::seqN(i, motion.efforts.rows(), n));
-        square += own.squaredNorm() * count_dependent({own.data(), own.data() + own.size()},
-                                                      motion.period_s, motion.cutoff_hz);
+        const double dependent = count_dependent({own.data(), own.data() + own.size()},
+                                                 motion.period_s, motion.cutoff_hz);
+        square += own.squaredNorm() * dependent;
+        independent += static_cast<double>(own.size()) / dependent;
       }
       samples += static_cast<double>(motion.efforts.rows());
     }
-    prior_weight_ =
-        std::sqrt(square / static_cast<double>(fitted_.size()) / samples / static_cast<double>(n));
+    // The start has as many parameters as make its residuals too small.
+    const double freedom = std::max(1.0, independent - static_cast<double>(parameters_.size()));
+    prior_weight_ = std::sqrt(independent / freedom * square / static_cast<double>(fitted_.size()) /
+                              samples / static_cast<double>(n));
     set_linear_start(*this, description_.variables);
   } else {
     priors_.setZero(static_cast<Index>(parameters_.size()));

@@ -96,6 +96,51 @@ bool is_linear(const PlantParameter& parameter) {
   }
 }
 
+// Solves the normal equations by least squares. Columns get one length, so that the rank does not
+// depend on units; what the equations do not determine becomes 0.
+Eigen::VectorXd solve_even(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right) {
+  const Eigen::VectorXd lengths =
+      normal.diagonal().cwiseSqrt().cwiseMax(std::numeric_limits<double>::min());
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-9);
+  solver.compute(lengths.cwiseInverse().asDiagonal() * normal *
+                 lengths.cwiseInverse().asDiagonal());
+  return solver.solve(right.cwiseQuotient(lengths)).cwiseQuotient(lengths);
+}
+
+// Does the same within ranges. The number farthest beyond its range, in units of the range, is held
+// at the range's end, and the others are solved again, until none is beyond.
+Eigen::VectorXd solve_within(Eigen::MatrixXd normal, Eigen::VectorXd right,
+                             const std::vector<std::pair<double, double>>& ranges) {
+  std::vector<bool> is_held(ranges.size());
+  while (true) {
+    const Eigen::VectorXd found = solve_even(normal, right);
+    double farthest = 1e-9;
+    Index worst = -1;
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      const auto [lower, upper] = ranges[i];
+      const double value = found[static_cast<Index>(i)];
+      const double beyond = std::max(lower - value, value - upper) / (upper - lower);
+      if (!is_held[i] && beyond > farthest) {
+        farthest = beyond;
+        worst = static_cast<Index>(i);
+      }
+    }
+    if (worst < 0) {
+      return found;
+    }
+    const auto at = static_cast<std::size_t>(worst);
+    const double end = std::clamp(found[worst], ranges[at].first, ranges[at].second);
+    is_held[at] = true;
+    right -= end * normal.col(worst);
+    const double unit = normal(worst, worst);
+    normal.row(worst).setZero();
+    normal.col(worst).setZero();
+    normal(worst, worst) = unit;
+    right[worst] = unit * end;
+  }
+}
+
 double move_into(const DecisionVariable& variable, double value) {
   return std::clamp(value, variable.lower, variable.upper);
 }
@@ -226,8 +271,8 @@ void set_linear_start(const IdentificationProblem& problem,
   const auto count = static_cast<Index>(columns.size()) + (has_payload ? kLinkNumbers : 0);
   if (count > 0) {
     std::vector<double> own;
-    for (const DecisionVariable& variable : variables) {
-      own.push_back(variable.start);
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      own.push_back(move_into(variables[p], get_parameter(problem.robot(), parameters[p])));
     }
     // The normal equations of all motions, in units of sigma.
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
@@ -263,20 +308,18 @@ void set_linear_start(const IdentificationProblem& problem,
             weight * (get_parameter(problem.robot(), parameters[p]) - own[p]);
       }
     }
-    // Columns of one length, so that the rank does not depend on units; what the motions do not
-    // determine stays as it is.
-    const Eigen::VectorXd lengths =
-        normal.diagonal().cwiseSqrt().cwiseMax(std::numeric_limits<double>::min());
-    const Eigen::MatrixXd even =
-        lengths.cwiseInverse().asDiagonal() * normal * lengths.cwiseInverse().asDiagonal();
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(1e-9);
-    solver.compute(even);
-    const Eigen::VectorXd change =
-        solver.solve(right.cwiseQuotient(lengths)).cwiseQuotient(lengths);
+    std::vector<std::pair<double, double>> ranges(
+        static_cast<std::size_t>(count),
+        {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()});
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const auto p = static_cast<std::size_t>(columns[c]);
+      ranges[c] = {variables[p].lower - own[p], variables[p].upper - own[p]};
+    }
+    const Eigen::VectorXd change = solve_within(std::move(normal), std::move(right), ranges);
     for (std::size_t c = 0; c < columns.size(); ++c) {
       DecisionVariable& variable = variables[static_cast<std::size_t>(columns[c])];
-      variable.start = move_into(variable, variable.start + change[static_cast<Index>(c)]);
+      variable.start = move_into(
+          variable, own[static_cast<std::size_t>(columns[c])] + change[static_cast<Index>(c)]);
     }
     if (has_payload) {
       set_payload_start(problem.robot(), parameters, change.tail<kLinkNumbers>(), variables);

@@ -236,6 +236,10 @@ json choose_simd(json problem, std::vector<std::string>& notes) {
 void rebuild_problem(RecordedRun& run) {
   const auto named = find_named_problem(run);
   run.input_folder = named ? named->file.parent_path() : run.folder;
+  if (run.is_identification()) {
+    run.problem_fault = "An identification has no design.";
+    return;
+  }
   const json& recorded = run.configuration.at("problem");
   const json usable = choose_simd(recorded, run.notes);
   constexpr const char* kConsequence =
@@ -298,6 +302,10 @@ ProblemDescription RecordedRun::describe() const {
   return description;
 }
 
+bool RecordedRun::is_identification() const {
+  return configuration.at("problem").at("kind") == "identification";
+}
+
 json RecordedRun::make_quantity(const Quantity& quantity) const {
   return armwright::make_quantity(quantity, !has_arm());
 }
@@ -314,6 +322,23 @@ std::vector<double> RecordedRun::find_best() const {
 fs::path RecordedRun::find_urdf() const {
   const auto urdf = configuration.at("problem").at("robot").at("urdf").get<std::string>();
   return resolve_config("robots", urdf, input_folder);
+}
+
+RobotModel RecordedRun::load_robot() const {
+  const json& robot = configuration.at("problem").at("robot");
+  RobotOptions options;
+  options.base = robot.value("base", "");
+  options.tip = robot.value("tip", "");
+  options.density_kg_per_m3 = robot.value("density_kg_per_m3", 0.0);
+  options.repair = robot.value("repair", false);
+  options.mass_from_shapes = robot.value("mass_from_shapes", true);
+  for (const auto& text : robot.value("packages", std::vector<std::string>())) {
+    const std::size_t at = text.find('=');
+    if (at != std::string::npos) {
+      options.packages[text.substr(0, at)] = input_folder / text.substr(at + 1);
+    }
+  }
+  return load_urdf(find_urdf(), options);
 }
 
 std::string RecordedRun::make_begin_command() const {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/robot/robot_model.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/run_plan.hpp"
 #include "study/run/run_result.hpp"
@@ -28,7 +29,8 @@ struct RecordedRun {
   std::int64_t budget = 0;
   JournalContent journal;
   std::optional<RunResult> result;  // empty before the end of the run
-  // Empty if it cannot be rebuilt as it was; `problem_fault` and `notes` say why.
+  // Empty if it cannot be rebuilt as it was; `problem_fault` and `notes` say why. Also empty for an
+  // identification: its page needs neither the problem nor the logs, which may be gone.
   std::optional<LoadedProblem> problem;
   std::string problem_fault;
   std::filesystem::path input_folder;  // the first place to look for files with relative names
@@ -41,6 +43,8 @@ struct RecordedRun {
   const TrackingProblem* tracking() const { return problem ? problem->tracking() : nullptr; }
   // Returns whether the problem is an arm, also if it cannot be rebuilt.
   bool has_arm() const { return tracking() != nullptr || (result && result->tracking); }
+  // Returns whether the run looked for a robot's plant in recorded motions.
+  bool is_identification() const;
   // Returns Quantity of web/src/data.ts. Without an arm the page shows it in its own unit.
   nlohmann::json make_quantity(const Quantity& quantity) const;
   // Returns the problem's description. Without the problem it has what the result records:
@@ -52,6 +56,9 @@ struct RecordedRun {
   // Returns the robot's file. Relative names of meshes refer to its folder. Throws Error{usage} if
   // the file is missing.
   std::filesystem::path find_urdf() const;
+  // Returns the robot with which the run was made, as its file has it, without loads. It needs no
+  // other file of the problem. Throws Error if the robot's file is missing or not valid any more.
+  RobotModel load_robot() const;
   // Returns the command that began the run, without the program's folder.
   std::string make_begin_command() const;
   // Returns "armwright evaluate DESIGN --problem ... ARGUMENTS", or an empty text if

@@ -88,6 +88,9 @@ void add_notes(const RecordedRun& run, const History& history, const PageOptions
     notes.push_back(
         "In training, best, mean and worst count only the designs that meet all constraints.");
   }
+  if (run.is_identification()) {
+    return;  // its page has no parts that need a simulation
+  }
   if (!run.problem) {
     notes.push_back(
         "Without the problem the bounds of its variables are unknown, so their history is left "
@@ -199,12 +202,14 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
       {"failure_reasons", make_failure_reasons(run)},
       {"record", nullptr},
       {"files", json::array()},
+      {"identification", nullptr},
       {"arm", nullptr}};
   if (run.tracking() != nullptr) {
     add_arm(run, options, used, page, notes);
   } else {
     page["test"] = make_test_errors(run, {});
     add_winner_record(run, page, notes);
+    add_identification(run, page, notes);
   }
   page["training"] =
       make_training(run, history, make_incumbents(run, incumbents, history.by_generation, used));

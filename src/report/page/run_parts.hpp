@@ -62,4 +62,10 @@ nlohmann::json make_failure_reasons(const RecordedRun& run);
 void add_winner_record(const RecordedRun& run, nlohmann::json& page,
                        std::vector<std::string>& notes);
 
+// Sets "identification" (Identification) and the title of the page of a run that has found a robot's
+// plant, and adds its arm with the recorded motions. Does nothing for other runs. Adds a note if the
+// arm cannot be shown. Throws Error{bad_data} if identification.json is damaged.
+void add_identification(const RecordedRun& run, nlohmann::json& page,
+                        std::vector<std::string>& notes);
+
 }  // namespace armwright

@@ -24,7 +24,7 @@ using namespace std::string_view_literals;
 
 constexpr std::size_t kMostReasons = 50;
 constexpr std::size_t kReasonLimit_bytes = 500;
-constexpr std::size_t kRecordLimit_bytes = std::size_t{1} << 30;
+constexpr std::size_t kWinnerRecordLimit_bytes = std::size_t{1} << 30;
 constexpr std::size_t kFilesLimit_bytes = std::size_t{16} << 20;  // for all files of a winner
 
 // Returns the type of an image by its first bytes, "text/csv" by the name, or an empty text. The
@@ -122,7 +122,7 @@ void add_winner_record(const RecordedRun& run, json& page, std::vector<std::stri
                                   sanitize(name)));
       continue;
     }
-    const std::string bytes = checksums.read(name, kRecordLimit_bytes);
+    const std::string bytes = checksums.read(name, kWinnerRecordLimit_bytes);
     if (bytes.size() > left_bytes) {
       notes.push_back(
           fmt::format("{} is left out, because the winner's files have more than {} MiB together.",

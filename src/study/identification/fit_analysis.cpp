@@ -288,6 +288,11 @@ FitAnalysis analyse_fit(const IdentificationProblem& problem, std::span<const do
 RobotModel make_fitted_robot(const IdentificationProblem& problem, std::span<const double> x) {
   RobotModel robot = problem.robot();
   set_parameters(robot, problem.parameters(), x);
+  for (const PlantParameter& parameter : problem.parameters()) {
+    if (parameter.kind == PlantParameter::Kind::inertia) {
+      robot.payload.reset();  // the last link's numbers include it
+    }
+  }
   return robot;
 }
 

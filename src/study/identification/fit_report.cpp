@@ -15,7 +15,16 @@ namespace {
 using Eigen::Index;
 using nlohmann::json;
 
+// A motion has at most so many samples, unless they were fewer than kLeastRate_hz: the page shows the
+// arm as it moved.
 constexpr Index kMostShown = 1000;
+constexpr double kLeastRate_hz = 25;
+
+Index choose_stride(const FittedMotion& motion) {
+  const Index for_count = (motion.efforts.rows() + kMostShown - 1) / kMostShown;
+  const auto for_rate = static_cast<Index>(1 / (kLeastRate_hz * motion.period_s) + 1e-9);
+  return std::max<Index>(1, std::min(for_count, for_rate));
+}
 
 json write_set(const FitSet& set) {
   json joints = json::array();
@@ -40,7 +49,7 @@ json write_motion(const FittedMotion& motion, std::span<const double> own,
   const Eigen::VectorXd before = motion.model.calc(own, false).motor;
   const Eigen::VectorXd after = motion.model.calc(x, false).motor;
   const Index n = motion.efforts.cols();
-  const Index stride = (motion.efforts.rows() + kMostShown - 1) / kMostShown;
+  const Index stride = choose_stride(motion);
   json times = json::array(), recorded = json::array(), old_model = json::array(),
        new_model = json::array(), positions = json::array();
   for (Index i = 0; i < n; ++i) {
@@ -64,10 +73,8 @@ json write_motion(const FittedMotion& motion, std::span<const double> own,
 
 }  // namespace
 
-namespace {
-
-json make_report(const IdentificationProblem& problem, std::span<const double> x,
-                 const FitAnalysis& analysis, bool is_converged) {
+std::string to_json(const IdentificationProblem& problem, std::span<const double> x,
+                    const FitAnalysis& analysis, const std::vector<std::string>& doubts) {
   json parameters = json::array();
   for (const FittedParameter& parameter : analysis.parameters) {
     parameters.push_back({{"name", parameter.name},
@@ -98,7 +105,7 @@ json make_report(const IdentificationProblem& problem, std::span<const double> x
     motions.push_back(write_motion(motion, own, x));
   }
   json all = {{"robot", problem.robot().name},
-              {"doubts", list_doubts(analysis, is_converged)},
+              {"doubts", doubts},
               {"parameters", parameters},
               {"undetermined", analysis.undetermined},
               {"correlations", correlations},
@@ -108,10 +115,8 @@ json make_report(const IdentificationProblem& problem, std::span<const double> x
   if (problem.has_held_back()) {
     all["held_back"] = write_set(analysis.judged);
   }
-  return all;
+  return all.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
-
-}  // namespace
 
 IdentificationFiles make_identification_files(
     const IdentificationProblem& problem, std::span<const double> x,
@@ -126,9 +131,7 @@ IdentificationFiles make_identification_files(
                       fmt::format("# The plant of {}, identified by armwright from {}.\n",
                                   sanitize(problem.robot().name),
                                   sanitize(join(analysis.fitted.logs, ", ")))),
-          make_report(problem, x, analysis, is_converged)
-                  .dump(1, ' ', false, json::error_handler_t::replace) +
-              "\n"};
+          to_json(problem, x, analysis, list_doubts(analysis, is_converged))};
 }
 
 std::vector<std::string> list_doubts(const FitAnalysis& analysis, bool is_converged) {

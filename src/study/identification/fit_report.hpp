@@ -6,13 +6,11 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "study/identification/fit_analysis.hpp"
 
 namespace armwright {
-
-inline constexpr const char* kPlantFile = "plant.toml";
-inline constexpr const char* kIdentificationFile = "identification.json";
 
 struct IdentificationFiles {
   std::string plant, identification;
@@ -21,6 +19,11 @@ struct IdentificationFiles {
 IdentificationFiles make_identification_files(
     const IdentificationProblem& problem, std::span<const double> x,
     const std::map<std::string, std::string>& input_hashes, bool is_converged);
+// Returns identification.json: doubts (list_doubts), parameters with intervals, errors per joint,
+// correlations, what is not determined, and each motion with its recorded and modelled efforts. A
+// motion is thinned to at most 1000 samples, but not below 25 per second.
+std::string to_json(const IdentificationProblem& problem, std::span<const double> x,
+                    const FitAnalysis& analysis, const std::vector<std::string>& doubts);
 
 // Returns what a user should know before anything else, one sentence each: parameters at the end of
 // their box, an optimizer that ended early, a fit that is no better than what was there. Empty if

@@ -23,7 +23,6 @@
 #include "problems/config/problem_loader.hpp"
 #include "problems/interface/schedule.hpp"
 #include "sim/simd/simd_level.hpp"
-#include "study/identification/fit_report.hpp"
 
 namespace armwright {
 namespace {

@@ -63,6 +63,10 @@ const std::vector<std::string>& derived_file_names();
 // Where a run keeps the files that its winner's test case left (winner_record.hpp). Their names
 // depend on the problem.
 inline constexpr const char* kWinnerFiles = "winner-files/";
+// What an identification leaves beside these: the robot's plant, and what is known of the fit.
+inline constexpr const char* kPlantFile = "plant.toml";
+inline constexpr const char* kIdentificationFile = "identification.json";
+inline constexpr std::size_t kIdentificationLimit_bytes = std::size_t{256} << 20;
 // Returns whether a file, named relative to the run's folder, is derived from the journal.
 bool is_derived_file(const std::string& name);
 

@@ -156,8 +156,8 @@ TEST(BagLog, BothLayoutsOfAControllersStateAreRead) {
     bool is_new;
     std::string definition;
   };
-  for (const StateRow& row :
-       {StateRow{false, old_definition}, StateRow{true, kNewDefinition}, StateRow{false, ""}, StateRow{true, ""}}) {
+  for (const StateRow& row : {StateRow{false, old_definition}, StateRow{true, kNewDefinition},
+                              StateRow{false, ""}, StateRow{true, ""}}) {
     SCOPED_TRACE(row.definition);
     const MotionLog log = parse_bag(make_mcap(make_controller_topic(row.definition),
                                               make_controller_states(row.is_new, true), "zstd"));

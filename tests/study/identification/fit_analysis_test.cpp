@@ -6,7 +6,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-
 #include <nlohmann/json.hpp>
 
 #include "base/expect_error.hpp"
@@ -38,9 +37,9 @@ class Identifications : public testing::Test {
     RunRequest request;
     request.plan.problem = load_problem("identify", settings);
     request.plan.optimizer = load_optimizer("ceres:lm");
-    request.plan.options = Options::parse("ceres:lm", request.plan.optimizer.options,
-                                          std::vector<std::string>{"derivatives=exact",
-                                                                   "transform=none"});
+    request.plan.options =
+        Options::parse("ceres:lm", request.plan.optimizer.options,
+                       std::vector<std::string>{"derivatives=exact", "transform=none"});
     request.plan.budget = 5000;
     request.plan.schedule = choose_schedule(request.plan.problem, request.plan.optimizer);
     request.folder = folder_.path() / fitted;
@@ -72,8 +71,7 @@ TEST_F(Identifications, OfTheKr300ExplainAnotherMotionTwiceAsWellAsTheDataSheet)
   for (const auto& [fitted, held_back] : {std::pair{"A", "B"}, {"B", "A"}}) {
     const json report = identify(fitted, held_back);
     const json& judged = report.at("held_back");
-    EXPECT_LE(judged.at("error_after").get<double>(),
-              0.6 * judged.at("error_before").get<double>())
+    EXPECT_LE(judged.at("error_after").get<double>(), 0.6 * judged.at("error_before").get<double>())
         << "fitted on " << fitted;
     EXPECT_NEAR(get_value(report, "payload.mass") + 17.78, kFlange_kg, 0.03 * kFlange_kg)
         << "fitted on " << fitted;
@@ -134,7 +132,8 @@ TEST_F(Identifications, MakeProblemsWhoseCasesHaveOtherPlants) {
   const Perturbation& p = drawn.tracking()->config().perturbation;
   EXPECT_EQ(p.fitted, Perturbation::Fitted::draws);
   ASSERT_TRUE(p.fitted_plant);
-  const Plant one = draw_plant(p, 6, 0.001, "train/1", 0), two = draw_plant(p, 6, 0.001, "train/1", 1);
+  const Plant one = draw_plant(p, 6, 0.001, "train/1", 0),
+              two = draw_plant(p, 6, 0.001, "train/1", 1);
   EXPECT_NE(one.fitted_values, two.fitted_values);
   EXPECT_EQ(one.fitted_values, draw_plant(p, 6, 0.001, "train/1", 0).fitted_values);
   const RobotModel& nominal = drawn.tracking()->config().robot;
@@ -147,9 +146,9 @@ TEST_F(Identifications, MakeProblemsWhoseCasesHaveOtherPlants) {
   EXPECT_FALSE(load_problem("robot", none).tracking()->config().perturbation.changes_anything());
   EXPECT_THAT(error_of(ErrorKind::usage,
                        [] {
-                         load_problem("robot", std::vector<std::string>{
-                                                   "robot.urdf=\"kr300\"",
-                                                   "perturbation.fitted=draws"});
+                         load_problem("robot",
+                                      std::vector<std::string>{"robot.urdf=\"kr300\"",
+                                                               "perturbation.fitted=draws"});
                        }),
               HasSubstr("the robot's plant must have [identification], as armwright identify "
                         "writes it"));

@@ -206,7 +206,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     move_cross_hair();
   }
 
-  // Shows the time of the replay as a line over the panel that has it. The chart itself does not
+  // Shows the time of the replay as a line over the panels that have it. The chart itself does not
   // change.
   function move_cursor(): void {
     cursor.hidden = true;
@@ -214,11 +214,17 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     if (chart === null || time === undefined || clock.replay !== time.replay || clock.case_id !== time.case(picked)) {
       return;
     }
-    find_places(chart, clock.time_s).forEach(({ panel, x_px }) => {
-      cursor.hidden = false;
-      cursor.style.transform = `translate(${x_px}px, ${panel.y}px)`;
-      cursor.style.height = `${panel.height}px`;
-    });
+    const places = find_places(chart, clock.time_s);
+    const last = places[places.length - 1];
+    if (last === undefined) {
+      return;
+    }
+    // Panels below each other have one line.
+    const panels = places.filter(({ x_px }) => Math.abs(x_px - last.x_px) < 0.5).map(({ panel }) => panel);
+    const top = Math.min(...panels.map((panel) => panel.y));
+    cursor.hidden = false;
+    cursor.style.transform = `translate(${last.x_px}px, ${top}px)`;
+    cursor.style.height = `${Math.max(...panels.map((panel) => panel.y + panel.height)) - top}px`;
   }
 
   // Returns where a place of the shared abscissa is in each panel that shows it.

@@ -164,3 +164,26 @@ export function make_error_bars(name: string, rows: [number, number, number][], 
     clip: true,
   };
 }
+
+// Returns thick horizontal lines in rows of categories, from rows of [row, low, high].
+export function make_spans(name: string, rows: [number, number, number][], color: string): Part {
+  return {
+    type: 'custom',
+    name,
+    data: rows.filter((row) => row.every((number) => isFinite(number))),
+    encode: { x: [1, 2], y: 0 },
+    z: 2,
+    silent: true,
+    itemStyle: { color },
+    renderItem: (_: unknown, api: Coordinates) => {
+      const low = api.coord([api.value(1), api.value(0)]);
+      const high = api.coord([api.value(2), api.value(0)]);
+      return {
+        type: 'line',
+        shape: { x1: low[0], y1: low[1], x2: high[0], y2: high[1] },
+        style: { stroke: color, lineWidth: 5, opacity: 0.45 },
+      };
+    },
+    clip: true,
+  };
+}

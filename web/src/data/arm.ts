@@ -85,7 +85,7 @@ export interface ReplayCase {
   label: string; // "test/2, case 17: the worst of 500"
   set: string;
   number: number;
-  points_m: [number, number, number][]; // the start, then the trajectory points
+  points_m: [number, number, number][]; // the start, then the trajectory points; empty for a recorded motion, which has no target
   segments: Segment[]; // one per point after the start
   steps: number;
   target_m: Packed; // steps x 3

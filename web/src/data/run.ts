@@ -1,6 +1,7 @@
 // The data of the page of a run.
 import type { PageBase, Quantity } from '../data';
 import type { DesignInfo, DistanceResponse, Signals, Sweep } from './arm';
+import type { Identification } from './identification';
 
 export interface RunData extends PageBase {
   kind: 'run';
@@ -19,6 +20,7 @@ export interface RunData extends PageBase {
   failure_reasons: FailureReason[]; // of training evaluations, the most frequent first
   record: string | null; // winner-record.csv: signals of the winner on the first test case
   files: WinnerFile[]; // that this case left
+  identification?: Identification | null; // null for other runs; pages of version 1.0 have none
   arm: ArmEvidence | null; // null if the problem is not an arm
 }
 

@@ -1,9 +1,18 @@
 // The page of one run.
-import type { RunData } from '../data';
+import type { Identification, RunData } from '../data';
 import type { Figure, Item, Tab } from '../model';
 import { make_design_table, make_results_table } from './design_table';
 import { make_response_figure } from './distance_response';
 import { make_health_item, make_tiles_item } from './health';
+import {
+  make_correlation_table,
+  make_doubts_item,
+  make_effort_figure,
+  make_fit_table,
+  make_identification_headline,
+  make_interval_figure,
+  make_parameter_table,
+} from './identification';
 import { make_joint_figures, make_saturation_table } from './joints';
 import { make_momentary_figure } from './momentary';
 import { make_requirement_table } from './requirement_table';
@@ -30,7 +39,44 @@ function make_half(figure: Figure, id: string): Figure {
   return { ...figure, id, width: 'half', height: 360 };
 }
 
+// An identification has no design to tune, so its page has other tabs than that of another run.
+function make_identification_tabs(data: RunData, found: Identification): Tab[] {
+  return keep_filled([
+    {
+      id: 'overview',
+      title: 'Overview',
+      items: [
+        make_doubts_item(found),
+        make_identification_headline(data, found),
+        make_fit_table(found),
+        data.facts.length > 0 ? { kind: 'facts', id: 'facts', title: 'About', facts: data.facts } : null,
+      ],
+    },
+    {
+      id: 'motion',
+      title: 'Motion',
+      items: [
+        data.replays.length > 0 ? { kind: 'replay', id: 'replay', title: 'The arm as recorded', sets: data.replays } : null,
+        make_effort_figure(found),
+      ],
+    },
+    {
+      id: 'parameters',
+      title: 'Parameters',
+      items: [make_parameter_table(found), make_interval_figure(found), make_correlation_table(found)],
+    },
+    {
+      id: 'search',
+      title: 'Search',
+      items: [has_training(data) ? make_fitness_figure(data) : null, make_variables_figure(data), make_reason_table(data)],
+    },
+  ]);
+}
+
 export function make_run_tabs(data: RunData): Tab[] {
+  if (data.identification) {
+    return make_identification_tabs(data, data.identification);
+  }
   const { arm, test } = data;
   const set = data.replays[0]; // the figures over time share their cursor with this replay set
   const robot = set ? data.robots[set.robot] : undefined;

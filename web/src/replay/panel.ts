@@ -52,6 +52,11 @@ function format_error(track: Track, moment: number): string {
   return error === null ? 'ended' : `${format_number(error * kMillimetres, 3)} mm`;
 }
 
+// Returns the effort of a joint at a moment after the start.
+function find_effort(track: Track, moment: number, joint: number, joints: number): number | null {
+  return moment > 0 && moment <= track.count ? track.effort[(moment - 1) * joints + joint] : null;
+}
+
 export class Panel {
   readonly element = make('div', { class: 'replay-panel' });
   private readonly end = make('p', { class: 'replay-end', role: 'status' });
@@ -80,7 +85,7 @@ export class Panel {
       joints,
     };
     const { time, point, distance, measured } = this.rows;
-    const first = [time, point, distance, measured, ...errors.map((pair) => pair[1])];
+    const first = scenario.is_recorded ? [time] : [time, point, distance, measured, ...errors.map((pair) => pair[1])];
     this.element.replaceChildren(
       make('dl', { class: 'replay-numbers' }, ...first.map((row) => row.element)),
       make('dl', { class: 'replay-numbers replay-joints' }, ...joints.map((row) => row.element)),
@@ -108,8 +113,11 @@ export class Panel {
     this.rows.joints.forEach((row, i) => {
       const revolute = scenario.chain.robot.joints[i].kind === 'revolute';
       const position = revolute ? `${(q[i] * kDegrees).toFixed(2)}°` : `${(q[i] * kMillimetres).toFixed(2)} mm`;
+      const effort = scenario.is_recorded && track !== null ? find_effort(track, moment, i, this.rows?.joints.length ?? 0) : null;
+      const unit = revolute ? 'N m' : 'N';
+      const state = effort === null ? position : `${position}, ${format_number(effort, 3)} ${unit}`;
       row.set(
-        shares === null ? position : `${position}, ${describe_share(shares[i])}`,
+        shares === null ? state : `${position}, ${describe_share(shares[i])}`,
         shares === null ? '' : find_colour_of(shares[i], look, paint),
       );
     });
@@ -138,10 +146,9 @@ export class Panel {
             make('div', {}, kPaintTitles[paint]),
             make('div', { class: 'replay-paints' }, ...paints.map((one) => make('span', {}, make_swatch(one.colour), one.label))),
           ]),
-      make('div', {}, 'Error along the path of the tip (mm)'),
-      bar,
-      ticks,
-      make('div', {}, make_swatch(look.text), 'target'),
+      ...(this.shown?.scenario.is_recorded
+        ? [make('div', {}, make_swatch(look.accent), 'path of the tip')]
+        : [make('div', {}, 'Error along the path of the tip (mm)'), bar, ticks, make('div', {}, make_swatch(look.text), 'target')]),
       make('div', {}, 'squares of the ground: 0.5 m'),
     );
   }

@@ -9,14 +9,20 @@ export interface Option {
 export class Picker {
   readonly element: HTMLElement;
   private readonly select = make('select');
+  private readonly label = make('span');
 
   constructor(label: string, on_change: (value: string) => void) {
-    this.element = make('label', { class: 'choice' }, make('span', {}, label), this.select);
+    this.element = make('label', { class: 'choice' }, this.label, this.select);
+    this.rename(label);
     this.select.addEventListener('change', () => on_change(this.select.value));
   }
 
   get value(): string {
     return this.select.value;
+  }
+
+  rename(label: string): void {
+    this.label.textContent = label;
   }
 
   // A list with fewer than two choices is not shown.

@@ -69,6 +69,15 @@ class Replay implements ReplayView {
   private readonly trace_picker = new Picker('Path', () => this.schedule());
   private readonly paint_picker = new Picker('Arm', () => this.apply());
   private readonly play_button = make_button('Play', () => this.set_playing(!this.state.playing), { class: 'replay-play' });
+  private readonly point_buttons = [
+    make_button('Previous point', () => this.go_to_point(-1)),
+    make_button('Next point', () => this.go_to_point(1)),
+  ];
+  private readonly strip_hint = make(
+    'span',
+    {},
+    'The strip below the slider shows the error over the whole test case. In shaded times the error is measured. Click into the strip to go to a time. ',
+  );
   private readonly scrub = make('input', { type: 'range', min: '0', step: '1', 'aria-label': 'Time', class: 'replay-scrub' });
   private readonly observer = new ResizeObserver(() => this.resize());
 
@@ -160,12 +169,6 @@ class Replay implements ReplayView {
       kSpeeds.map((value) => ({ value, label: `${value} ×` })),
       '1',
     );
-    const traces: { value: TraceChoice; label: string }[] = [
-      { value: 'past', label: 'until now, with earlier moves faint' },
-      { value: 'move', label: 'of this move' },
-      { value: 'whole', label: 'of the whole motion' },
-    ];
-    this.trace_picker.set(traces, 'past');
     const paints: { value: Paint; label: string }[] = [
       { value: 'robot', label: 'in its own colours' },
       { value: 'torque', label: 'coloured by torque' },
@@ -195,22 +198,15 @@ class Replay implements ReplayView {
         'div',
         { class: 'replay-main' },
         this.stage.element,
-        make(
-          'div',
-          { class: 'replay-transport' },
-          this.play_button,
-          make_button('Previous point', () => this.go_to_point(-1)),
-          make_button('Next point', () => this.go_to_point(1)),
-          this.speed_picker.element,
-        ),
+        make('div', { class: 'replay-transport' }, this.play_button, ...this.point_buttons, this.speed_picker.element),
         make('div', { class: 'replay-times' }, this.scrub, this.strip.element),
         this.panel.element,
       ),
       make(
         'p',
         { class: 'replay-hint' },
-        'The strip below the slider shows the error over the whole test case. In shaded times the error is measured. Click into the strip to go to a time. ' +
-          'The space bar plays and pauses, the arrow keys step (ten steps with Shift), and Home and End go to the ends. ' +
+        this.strip_hint,
+        'The space bar plays and pauses, the arrow keys step (ten steps with Shift), and Home and End go to the ends. ' +
           'Drag to turn the view, use the wheel to zoom and the right button to move the view.',
       ),
     );
@@ -250,6 +246,7 @@ class Replay implements ReplayView {
     } else if (!ids.includes(state.ghost)) {
       state.ghost = '';
     }
+    this.set_controls(this.scenario.is_recorded);
     this.scrub.max = String(this.scenario.moments);
     this.set_playing(false);
     this.set_time(0);
@@ -262,6 +259,26 @@ class Replay implements ReplayView {
       replay.id,
     );
     this.apply();
+  }
+
+  // Shows only the controls that the motion has: one that a robot recorded has no moves and no errors.
+  private set_controls(is_recorded: boolean): void {
+    const traces: { value: TraceChoice; label: string }[] = is_recorded
+      ? [
+          { value: 'past', label: 'until now' },
+          { value: 'whole', label: 'of the whole motion' },
+        ]
+      : [
+          { value: 'past', label: 'until now, with earlier moves faint' },
+          { value: 'move', label: 'of this move' },
+          { value: 'whole', label: 'of the whole motion' },
+        ];
+    const { value } = this.trace_picker;
+    this.trace_picker.set(traces, traces.some((one) => one.value === value) ? value : 'past');
+    for (const element of [...this.point_buttons, this.strip.element, this.strip_hint]) {
+      element.hidden = is_recorded;
+    }
+    this.case_picker.rename(is_recorded ? 'Log' : 'Test case');
   }
 
   // Updates everything that does not change with the time.
@@ -432,7 +449,10 @@ class Replay implements ReplayView {
     if (this.scrub.value !== text) {
       this.scrub.value = text;
     }
-    this.scrub.setAttribute('aria-valuetext', `${state.time_s.toFixed(2)} s, point ${segment + 1}`);
+    this.scrub.setAttribute(
+      'aria-valuetext',
+      scenario.is_recorded ? `${state.time_s.toFixed(2)} s` : `${state.time_s.toFixed(2)} s, point ${segment + 1}`,
+    );
     state.frames += 1;
     state.last_frame_ms = performance.now() - begin_ms;
   }

@@ -21,7 +21,7 @@ export interface Snapshot {
   moment: number; // may have a fraction
   q: number[];
   ghost_q: number[] | null;
-  target_m: [number, number, number];
+  target_m: [number, number, number] | null; // null: there is none
   segment: number;
   trace: TraceChoice;
   paints: string[] | null; // the colour of the link that each joint moves; null: the colours of the robot

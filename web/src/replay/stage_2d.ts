@@ -52,7 +52,7 @@ export class Stage2d implements Stage {
     scenario.replay.points_m.forEach((point, i) => {
       this.draw_dot(context, point, i === snapshot.segment + 1 ? look.bad : look.muted, i === snapshot.segment + 1 ? 5 : 3);
     });
-    const main_colour = (k: number): string => to_css(find_colour(scale, track?.errors_m[k] ?? 0));
+    const main_colour = (k: number): string => (scenario.is_recorded ? look.accent : to_css(find_colour(scale, track?.errors_m[k] ?? 0)));
     for (const [one, colour] of [
       [ghost, () => kGhost],
       [track, main_colour],
@@ -70,7 +70,9 @@ export class Stage2d implements Stage {
       this.draw_arm(context, snapshot.ghost_q, () => kGhost, 5);
     }
     this.draw_arm(context, snapshot.q, (body) => snapshot.paints?.[body - 1] ?? look.muted, 4);
-    this.draw_dot(context, snapshot.target_m, look.text, 6);
+    if (snapshot.target_m !== null) {
+      this.draw_dot(context, snapshot.target_m, look.text, 6);
+    }
   }
 
   set_view(view: ViewChoice): void {
@@ -96,10 +98,10 @@ export class Stage2d implements Stage {
     if (this.setting === null) {
       return;
     }
-    const { chain, replay } = this.setting.scenario;
+    const { chain, places_m, replay } = this.setting.scenario;
     const across = (point: Point): number => (this.view === 'front' ? point[1] : point[0]);
     const up = (point: Point): number => (this.view === 'top' ? point[1] : point[2]);
-    const points: Point[] = [[0, 0, 0], ...replay.points_m, ...calc_frames(chain, replay.start_q).map(find_position)];
+    const points: Point[] = [[0, 0, 0], ...places_m, ...calc_frames(chain, replay.start_q).map(find_position)];
     const x = points.map(across);
     const z = points.map(up);
     const [left, right] = [Math.min(...x) - 0.3, Math.max(...x) + 0.3];

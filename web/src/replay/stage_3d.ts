@@ -18,8 +18,9 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { make } from '../app/dom';
 import { calc_frames, find_position, type Frame } from './chain';
-import { find_colour } from './colours';
+import { find_colour, type Rgb } from './colours';
 import { make_bodies, to_matrix } from './geometry';
+import type { Track } from './scenario';
 import { find_trace_parts, kGhost, type Setting, type Snapshot, type Stage, type ViewChoice } from './stage';
 import { make_ground, make_target, Points, release } from './surroundings';
 import { Trace } from './trace';
@@ -85,11 +86,11 @@ class Arm {
   }
 }
 
-// Returns the box around the base, the points of the test case and the start of the arm.
+// Returns the box around the base, the places of the test case and the start of the arm.
 function find_extent(setting: Setting): Box3 {
-  const { chain, replay } = setting.scenario;
+  const { chain, places_m, replay } = setting.scenario;
   const box = new Box3().expandByPoint(new Vector3(0, 0, 0));
-  for (const point of replay.points_m) {
+  for (const point of places_m) {
     box.expandByPoint(new Vector3(...point));
   }
   for (const frame of calc_frames(chain, replay.start_q)) {
@@ -168,7 +169,10 @@ export class Stage3d implements Stage {
     if (this.ghost !== null && snapshot.ghost_q !== null) {
       this.ghost.show(calc_frames(chain, snapshot.ghost_q), null);
     }
-    this.still.target.position.set(...snapshot.target_m);
+    this.still.target.visible = snapshot.target_m !== null;
+    if (snapshot.target_m !== null) {
+      this.still.target.position.set(...snapshot.target_m);
+    }
     this.still.points.show(snapshot.segment + 1);
     for (const [track, trace] of [
       [setting.track, this.traces.main],
@@ -242,7 +246,7 @@ export class Stage3d implements Stage {
   private set_surroundings({ scenario, look }: Setting): void {
     this.clear_still();
     this.scene.background = new Color(look.background);
-    const reach = Math.max(...scenario.replay.points_m.map((point) => Math.hypot(point[0], point[1])), 1);
+    const reach = Math.max(...scenario.places_m.map((point) => Math.hypot(point[0], point[1])), 1);
     this.still = { ground: make_ground(look, reach), points: new Points(scenario.replay.points_m, look), target: make_target(look) };
     this.scene.add(this.still.ground, this.still.points.group, this.still.target);
   }
@@ -267,12 +271,17 @@ export class Stage3d implements Stage {
     }
   }
 
-  private set_traces({ track, ghost, scale, look }: Setting): void {
+  private set_traces({ scenario, track, ghost, scale, look }: Setting): void {
     this.clear_traces();
-    const { r, g, b } = new Color(kGhost).getRGB({ r: 0, g: 0, b: 0 }, 'srgb');
+    const plain = (colour: string): Rgb => {
+      const { r, g, b } = new Color(colour).getRGB({ r: 0, g: 0, b: 0 }, 'srgb');
+      return [r, g, b];
+    };
+    const [accent, pale] = [plain(look.accent), plain(kGhost)];
+    const paint = (of: Track, moment: number): Rgb => (scenario.is_recorded ? accent : find_colour(scale, of.errors_m[moment]));
     this.traces = {
-      main: track === null ? null : new Trace(track.tip_m, (moment) => find_colour(scale, track.errors_m[moment]), 3.5, look.background),
-      ghost: ghost === null ? null : new Trace(ghost.tip_m, () => [r, g, b], 2, look.background),
+      main: track === null ? null : new Trace(track.tip_m, (moment) => paint(track, moment), 3.5, look.background),
+      ghost: ghost === null ? null : new Trace(ghost.tip_m, () => pale, 2, look.background),
     };
     for (const trace of [this.traces.main, this.traces.ghost]) {
       if (trace !== null) {
