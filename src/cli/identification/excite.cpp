@@ -150,6 +150,7 @@ std::string describe_files(const ExciteOptions& options, const ExcitationProblem
   }
   if (problem.config().robot.payload && !options.payload.empty()) {
     flags += " --payload " + options.payload;
+    flags += options.payload_com.empty() ? "" : " --payload-com " + options.payload_com;
   }
   std::string text =
       "\n" + style.bold("Files in " + sanitize(folder.string())) +

@@ -194,11 +194,11 @@ void load_identification(const ConfigTable& table, LoadedProblem& loaded) {
   config.cutoff_hz = conditioning.cutoff_hz;
   config.fitted =
       read_logs(its, kLogFiles, config.robot, options, conditioning, loaded, config.notes);
+  config.held_back =
+      read_logs(its, kLogsHeldBack, config.robot, options, conditioning, loaded, config.notes);
   if (config.fitted.empty()) {
     its.refuse(kLogFiles, "it must name at least one log");
   }
-  config.held_back =
-      read_logs(its, kLogsHeldBack, config.robot, options, conditioning, loaded, config.notes);
   const auto fitted = static_cast<int>(config.fitted.size());
   loaded.sets.validation_cases = fitted;
   loaded.sets.test_cases = std::max(1, static_cast<int>(config.held_back.size()));

@@ -12,7 +12,7 @@
 // What is known of the robot beforehand counts as well: a parameter with the prior deviation d_p has
 // the residual
 //   sqrt(v) (x_p - x_p0) / d_p,
-// x_p0 being the robot's own value and v the mean square of a residual that the linear start leaves,
+// x_p0 being the robot's own value and v the mean square of a residual that a fit without priors leaves,
 // times the number of samples that tell as much as one. Then one effective sample and one deviation
 // count the same (maximum a posteriori estimate). list_priors() has the deviations.
 //

@@ -1,5 +1,6 @@
 #include "sim/identification/plant_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/dynamics/joint_effort.hpp"
@@ -46,16 +47,36 @@ struct DryFriction {
   Eigen::VectorXd by_stribeck_rate;
 };
 
+// Returns rates between the samples by cubics with the samples' rates and accelerations (Hermite).
+Eigen::VectorXd refine(const Eigen::VectorXd& rates, const Eigen::VectorXd& accelerations,
+                       double period_s) {
+  constexpr Index kParts = EffortSmoothing::kParts;
+  Eigen::VectorXd fine((rates.size() - 1) * kParts + 1);
+  for (Index k = 0; k < fine.size(); ++k) {
+    const Index from = std::min(k / kParts, rates.size() - 2);
+    const double u = static_cast<double>(k - from * kParts) / kParts;
+    fine[k] =
+        rates[from] + u * u * (3 - 2 * u) * (rates[from + 1] - rates[from]) +
+        period_s * u * (1 - u) * ((1 - u) * accelerations[from] - u * accelerations[from + 1]);
+  }
+  return fine;
+}
+
 DryFriction calc_dry_friction(const JointPlant& plant, const Eigen::VectorXd& rates,
-                              const PlantModel::Smoothing& smooth) {
+                              const Eigen::VectorXd& accelerations,
+                              const EffortSmoothing& smoothing) {
+  const bool is_smoothed = smoothing.apply && rates.size() > 1;
+  const Eigen::VectorXd fine =
+      is_smoothed ? refine(rates, accelerations, smoothing.period_s) : rates;
   DryFriction friction;
-  friction.rise = (rates / plant.transition_rate).array().tanh();
-  friction.fall = (rates / plant.stribeck_rate).array().tanh();
+  friction.rise = (fine / plant.transition_rate).array().tanh();
+  friction.fall = (fine / plant.stribeck_rate).array().tanh();
   friction.by_stribeck_rate = plant.stribeck / (plant.stribeck_rate * plant.stribeck_rate) *
-                              rates.cwiseProduct((1 - friction.fall.array().square()).matrix());
+                              fine.cwiseProduct((1 - friction.fall.array().square()).matrix());
   for (Eigen::VectorXd* part : {&friction.rise, &friction.fall, &friction.by_stribeck_rate}) {
-    if (smooth) {
-      *part = smooth(*part);
+    if (is_smoothed) {
+      const Eigen::VectorXd smooth = smoothing.apply(*part);
+      *part = smooth(Eigen::seqN(0, rates.size(), EffortSmoothing::kParts));
     }
   }
   return friction;
@@ -73,11 +94,9 @@ bool has_breakaway(std::span<const PlantParameter> parameters, std::size_t joint
 }  // namespace
 
 PlantModel::PlantModel(const RobotModel& robot, std::vector<PlantParameter> parameters,
-                       double gravity_m_per_s2, const JointMotion& motion, Smoothing smooth)
-    : robot_(robot),
-      parameters_(std::move(parameters)),
-      motion_(motion),
-      smooth_(std::move(smooth)) {
+                       double gravity_m_per_s2, const JointMotion& motion,
+                       const EffortSmoothing& smoothing)
+    : robot_(robot), parameters_(std::move(parameters)), motion_(motion), smoothing_(smoothing) {
   for (Link& link : robot_.links) {
     link.visuals.clear();
   }
@@ -161,7 +180,7 @@ void PlantModel::add_motors(const RobotModel& changed, bool jacobian, Efforts& e
     const JointPlant& plant = changed.joints[joint].plant;
     const Eigen::VectorXd rates = motion_.rates.col(i),
                           accelerations = motion_.accelerations.col(i);
-    const DryFriction friction = calc_dry_friction(plant, rates, smooth_);
+    const DryFriction friction = calc_dry_friction(plant, rates, accelerations, smoothing_);
     const auto rows = Eigen::seqN(i, rates.size(), n);
     efforts.motor(rows) += plant.armature * accelerations + plant.viscous * rates +
                            (plant.coulomb + plant.stribeck) * friction.rise -

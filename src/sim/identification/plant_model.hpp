@@ -21,16 +21,22 @@ struct JointMotion {
   Eigen::MatrixXd positions, rates, accelerations;
 };
 
+// The filter that recorded efforts have passed. `apply` returns a signal as the filter leaves it, with
+// kParts numbers per sample: dry friction steps where a joint turns round, and a filter at the
+// samples' own period would take what is above half of their rate for slow changes.
+struct EffortSmoothing {
+  static constexpr Eigen::Index kParts = 8;
+  double period_s = 0;                                                // of the samples
+  std::function<Eigen::VectorXd(const Eigen::VectorXd&)> apply = {};  // empty: there is no filter
+};
+
 class PlantModel {
  public:
-  // Returns a signal, one number per sample, as a filter leaves it.
-  using Smoothing = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
-
-  // Parameters that are not in the list keep the robot's values. `smooth` is the filter that the
-  // recorded efforts have passed. Dry friction, which steps where a joint turns round, passes it, too.
-  // Everything else is smooth, since positions passed the filter before they were differentiated.
+  // Parameters that are not in the list keep the robot's values. Dry friction passes the filter
+  // `smoothing`. Everything else is smooth, since positions passed it before they were differentiated.
   PlantModel(const RobotModel& robot, std::vector<PlantParameter> parameters,
-             double gravity_m_per_s2, const JointMotion& motion, Smoothing smooth = {});
+             double gravity_m_per_s2, const JointMotion& motion,
+             const EffortSmoothing& smoothing = {});
 
   // Efforts in N m or N, in the order of samples and, within a sample, of joints.
   struct Efforts {
@@ -54,7 +60,7 @@ class PlantModel {
   RobotModel robot_;  // without visuals
   std::vector<PlantParameter> parameters_;
   JointMotion motion_;
-  Smoothing smooth_;
+  EffortSmoothing smoothing_;
   Eigen::MatrixXd regressor_;  // Y of all samples, one below the other
 };
 

@@ -19,6 +19,7 @@ using Eigen::Index;
 
 constexpr double kConfidence = 0.95;
 constexpr int kWhitenessLags = 10;
+constexpr double kWindow = 8;
 // Of the normal matrix with columns of length 1: smaller eigenvalues are rounding.
 constexpr double kNoInformation = 1e-11;
 // The part in such a direction from which on a parameter counts as undetermined.
@@ -69,10 +70,13 @@ double count_dependent(const std::vector<double>& values, const Channel& channel
 }
 
 // Returns J^T R J, R being the residuals' correlations: those at a lag count less the longer it is, so
-// that R is positive definite (Bartlett's window).
-Eigen::MatrixXd calc_spread(const Eigen::MatrixXd& rows, const std::vector<double>& values) {
+// that R is positive definite (Bartlett's window). The window ends at kWindow times the residuals' own
+// memory: the longer it is, the more of the noise that the fit has taken away is missing in the sum.
+Eigen::MatrixXd calc_spread(const Eigen::MatrixXd& rows, const std::vector<double>& values,
+                            double dependent) {
   const Index count = rows.rows();
-  const auto longest = static_cast<Index>(kLongestMemory * static_cast<double>(count));
+  const auto longest = static_cast<Index>(
+      std::min(kLongestMemory * static_cast<double>(count), kWindow * dependent));
   Eigen::MatrixXd spread = rows.transpose() * rows;
   for (Index lag = 1; lag < longest; ++lag) {
     const double weight = 1 - static_cast<double>(lag) / static_cast<double>(longest);
@@ -181,7 +185,7 @@ Information gather(const IdentificationProblem& problem, std::span<const double>
       }
       const double dependent = count_dependent(values, channel);
       all.normal += rows.transpose() * rows;
-      all.spread += square * calc_spread(rows, values);
+      all.spread += square * calc_spread(rows, values, dependent);
       all.independent += static_cast<double>(values.size()) / dependent;
     }
   }

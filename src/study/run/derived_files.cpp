@@ -274,9 +274,9 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
   }
   if (const auto* identification = find_identification(*plan.problem.problem);
       result.winner && all && identification != nullptr) {
-    const IdentificationFiles made =
-        make_identification_files(*identification, result.judged[*result.winner].candidate.x,
-                                  plan.problem.input_hashes, !result.ended_by_budget());
+    const IdentificationFiles made = make_identification_files(
+        *identification, result.judged[*result.winner].candidate.x, plan.problem.input_hashes,
+        !(result.ended_by_budget() && plan.optimizer.capabilities.local));
     write_file_atomically(files, kPlantFile, made.plant);
     write_file_atomically(files, kIdentificationFile, made.identification);
   }

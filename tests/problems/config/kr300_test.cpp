@@ -54,7 +54,7 @@ std::vector<double> calc_motor_torques(const RobotModel& robot, const std::vecto
   return torques;
 }
 
-struct Row {
+struct KukaRow {
   double payload_kg;  // a point mass 50 mm behind the flange
   std::vector<double> q, rate, acceleration, motor_torque_n_m;
 };
@@ -70,7 +70,7 @@ struct Row {
 // 60 samples cut at each end):
 //   trajectory A: 2.388 2.735 4.010 0.389 0.673 1.051,
 //   trajectory B: 1.936 2.492 3.578 0.323 0.583 0.658.
-const std::vector<Row> kRows = {
+const std::vector<KukaRow> kRows = {
     {0,
      {0.5013, -0.0605, -3.5187, -1.8761, 1.3818, -0.9352},
      {0.2926, -1.19266, -0.2702, -0.56129, -1.42568, -1.54951},
@@ -105,7 +105,7 @@ const std::vector<Row> kRows = {
 TEST(Kr300, HasTheMotorTorquesOfItsTable) {
   const RobotModel bare = load_kr300();
   for (std::size_t k = 0; k < kRows.size(); ++k) {
-    const Row& row = kRows[k];
+    const KukaRow& row = kRows[k];
     const LoadBody point{.com_m = {0, 0, -0.05}};
     const RobotModel robot = row.payload_kg > 0 ? add_load(bare, row.payload_kg, point) : bare;
     const std::vector<double> rest(kAxes, 0);

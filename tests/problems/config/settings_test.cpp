@@ -65,6 +65,10 @@ position_m = [1.4, 0.2, 0.9]
 )";
 constexpr const char* kFunction = "kind = \"analytic\"\n[function]\nname = \"sphere\"\n";
 
+constexpr const char* kIdentificationProblem =
+    "kind = \"identification\"\n[robot]\nurdf = \"planar2\"\n[identification]\nlogs = []\n";
+constexpr const char* kExcitationProblem =
+    "kind = \"excitation\"\n[robot]\nurdf = \"planar2\"\n[excitation]\n";
 constexpr const char* kProgramProblem = "kind = \"program\"\n[program]\ncommand = \"exec:true\"\n";
 constexpr const char* kCommandProblem = R"(kind = "command"
 [command]
@@ -110,6 +114,8 @@ Specimen make_specimen(const std::string& path) {
       {"control.delay_s", {"control.interface=velocity"}},
       {"control.resolution_rad", {"control.interface=velocity"}},
       {"control.resolution_m", {"control.interface=velocity"}},
+      {"identification.payload_com_m", {"identification.payload_kg=1"}},
+      {"excitation.payload_com_m", {"excitation.payload_kg=1"}},
       {"racing.first_cases", {"racing.kind=halving"}},
       {"racing.eta", {"racing.kind=halving"}},
       {"racing.margin", {"racing.kind=abandonment"}},
@@ -128,6 +134,10 @@ Specimen make_specimen(const std::string& path) {
     specimen.text = kFunction;
   } else if (path.starts_with("program.")) {
     specimen.text = kProgramProblem;
+  } else if (path.starts_with("identification.")) {
+    specimen.text = kIdentificationProblem;
+  } else if (path.starts_with("excitation.")) {
+    specimen.text = kExcitationProblem;
   } else if (const auto part = path.substr(0, path.find_first_of(".["));
              part == "command" || part == "variable" || part == "constraint" || part == "metric" ||
              part == "cases" || path.starts_with("objective[]")) {
@@ -259,6 +269,7 @@ TEST(Settings, DefaultsAreThoseOfAProblemThatLeavesThemOut) {
         one.path.starts_with("path.") || one.path.starts_with("function.") ||
         one.path.starts_with("racing.") || one.path.starts_with("program.") ||
         one.path.starts_with("command.") || one.path.starts_with("cases.") ||
+        one.path.starts_with("identification.") || one.path.starts_with("excitation.") ||
         one.path.find("[]") != std::string::npos || one.path == "control.bandwidth_hz" ||
         one.path == "control.delay_s" || one.path.starts_with("control.resolution_") ||
         one.path == "objective.cvar_share" || one.path == "objective.failure_penalty_m";

@@ -202,7 +202,7 @@ TEST(ExcitationSettings, AreRefusedInWords) {
       {usage, {"excitation.criterion=best"}, "Valid: condition, d-optimal"},
       {usage,
        {"excitation.floor_m=3"},
-       "the arm's first joint is lower, at 0.159 m; the floor must not be"},
+       "the arm's first joint is lower, at 0.495 m; the floor must not be"},
       {usage, {"excitation.blend_s=11"}, "it must be at most half of the duration, 10 s"},
       {usage,
        {"excitation.acceleration_limits=[1,2]"},
@@ -211,7 +211,9 @@ TEST(ExcitationSettings, AreRefusedInWords) {
        {"excitation.effort_share=0.01"},
        "the limits leave no posture from which a motion could begin: in the best of 500 random "
        "postures"},
-      {usage, {"excitation.harmonics=0"}, "it must be an integer >= 1"}};
+      {usage,
+       {"excitation.harmonics=0"},
+       "excitation.harmonics is 0; it must be an integer from 1 to 20"}};
   for (const auto& [kind, overrides, message] : rows) {
     EXPECT_THAT(refuse(kind, overrides), HasSubstr(message));
   }
