@@ -89,7 +89,6 @@ IdentificationConfig make_config(std::vector<FitGroup> groups, double noise = 0,
   config.gravity_m_per_s2 = kNormalGravity_m_per_s2;
   config.groups = std::move(groups);
   config.fitted = {{"log", record_sines(make_true_arm(), noise, seed)}};
-  config.cutoff_hz = 25;
   return config;
 }
 

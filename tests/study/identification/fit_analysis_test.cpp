@@ -40,7 +40,7 @@ class Identifications : public testing::Test {
     request.plan.options =
         Options::parse("ceres:lm", request.plan.optimizer.options,
                        std::vector<std::string>{"derivatives=exact", "transform=none"});
-    request.plan.budget = 5000;
+    request.plan.budget = 1000;
     request.plan.schedule = choose_schedule(request.plan.problem, request.plan.optimizer);
     request.folder = folder_.path() / fitted;
     StopSignal stop;
