@@ -206,7 +206,7 @@ TEST(ShippedProblems, AreAllKnownHere) {
     expected.push_back(experiment.name);
   }
   expected.insert(expected.end(), {"q1-requirements", "q2-pareto", "q2-torque", "q2-error",
-                                   "q2-energy", "co-design", "robot"});
+                                   "q2-energy", "co-design", "robot", "identify", "excite"});
   for (const std::string experiment : {"q1", "e6", "q3"}) {
     expected.push_back("robust-" + experiment);
     expected.push_back("faithful-" + experiment);
