@@ -506,7 +506,8 @@ std::optional<FittedPlant> read_plant(const std::filesystem::path& file, RobotMo
   names.insert(names.end(), robot.held_joints.begin(), robot.held_joints.end());
   const PlantSettings settings(names, link_names);
   const ConfigTable document = ConfigTable::load(settings.file(), file);
-  const bool has_others = document.has(settings.links().key) || document.has(kPayloadSettings.key);
+  const bool has_others = document.has(settings.links().key) ||
+                          document.has(kPayloadSettings.key) || document.has(kFittedSettings.key);
   const ConfigTable joints = has_others ? document.get_table_or_empty(settings.joints())
                                         : document.get_table(settings.joints());
   for (const std::string& name : names) {  // messages list the names in this order

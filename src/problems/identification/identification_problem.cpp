@@ -57,7 +57,7 @@ EffortSmoothing make_smoothing(double period_s, double cutoff_hz) {
 }
 
 // A second encoder that differs by a constant tells nothing.
-constexpr double kNoDeflection = 1e-9;  // rad or m
+constexpr double kNoDeflection = 1e-7;  // rad or m
 
 double find_spread(const Eigen::VectorXd& values) {
   return values.maxCoeff() - values.minCoeff();

@@ -227,7 +227,7 @@ std::vector<DecisionVariable> make_boxes(const RobotModel& robot,
 }
 
 Eigen::VectorXd list_priors(const RobotModel& robot, std::span<const PlantParameter> parameters) {
-  Eigen::VectorXd deviations(static_cast<Index>(parameters.size()));
+  Eigen::VectorXd deviations = Eigen::VectorXd::Zero(static_cast<Index>(parameters.size()));
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const double own = get_parameter(robot, parameters[p]);
     double& deviation = deviations[static_cast<Index>(p)];
