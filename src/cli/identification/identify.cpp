@@ -165,7 +165,7 @@ void add_identify(CLI::App& app, Session& session) {
   command
       ->add_option("--fit", options->fit,
                    "What is fitted: friction, stribeck, armature, payload, counterbalance,\n"
-                   "stiffness, delay, inertial (default: friction,armature)")
+                   "counterbalance_slope, stiffness, delay, inertial (default: friction,armature)")
       ->type_name("GROUPS");
   add_list("--column", options->columns,
            "The log's column of a quantity, as in position_1=q1 or time=t; repeatable",

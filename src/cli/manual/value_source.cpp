@@ -11,6 +11,7 @@
 #include "problems/config/config_files.hpp"
 #include "problems/identification/excitation_problem.hpp"
 #include "report/exchange/export.hpp"
+#include "sim/identification/plant_parameters.hpp"
 #include "sim/simd/simd_level.hpp"
 
 namespace armwright {
@@ -78,6 +79,18 @@ std::vector<SourceRow> make_argument_rows() {
       {"plot", "--theme", choose({"light", "dark"})},
       {"plot", "--figure", kFree},
       {"reproduce", "--table", kFree},
+      {"identify", "LOG", kFile},
+      {"identify", "--validate", kFile},
+      {"identify", "--column", kFree},
+      {"identify", "--unit", kFree},
+      {"identify", "--gear-ratio", kFree},
+      {"identify", "--sign", kFree},
+      {"identify", "--joints", kFree},
+      {"identify", "--topic", kFree},
+      {"identify", "--cutoff", kFree},
+      {"identify", "--payload", kFree},
+      {"identify", "--payload-com", kFree},
+      {"identify", "--fit", separate(choose(fit_group_names()))},
       {"export", "--format", choose(list_export_formats())},
       {"import", "--optimizer", kFree},  // a label
       {"ask", "RUN", kFolder},
