@@ -18,6 +18,7 @@
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
+#include "cli/views/result_view.hpp"
 #include "problems/config/plant_file.hpp"
 #include "problems/identification/excitation_problem.hpp"
 #include "study/identification/excitation_report.hpp"

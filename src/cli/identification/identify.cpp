@@ -17,6 +17,7 @@
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/identification_view.hpp"
+#include "cli/views/result_view.hpp"
 #include "problems/identification/identification_problem.hpp"
 #include "study/identification/fit_report.hpp"
 #include "study/run/run.hpp"
