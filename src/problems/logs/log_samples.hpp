@@ -11,8 +11,8 @@
 namespace armwright {
 
 struct Conditioning {
-  // Of the filter. Positions and efforts pass the same filter, so that both sides of the equation of
-  // motion are filtered alike.
+  // The filter's frequency. Positions and efforts pass the same filter, so that both sides of the
+  // equation of motion are filtered alike.
   double cutoff_hz = 8;
   double cut_s = 0.24;  // left out at each end, where the filter lacks samples of one side
   // Between the samples that are kept, at least the recorded period; 0: the longest one with ten

@@ -14,7 +14,7 @@
 namespace armwright {
 namespace {
 
-// Of what a joint at rest shows: noise of an encoder, and a controller that holds the joint.
+// The largest motion of a joint at rest: noise of an encoder, and a controller that holds the joint.
 constexpr double kRest = 2e-3;  // rad or m
 // How far beyond its range a joint may be: overshoot, and rounded limits in robot files.
 constexpr double kBeyondRange = 0.03;  // rad or m
@@ -121,7 +121,7 @@ class Changes {
       return values(to, joint) - values(from, joint);
     });
   }
-  // Of a position whose rates these are.
+  // Returns the changes of a position that has these rates.
   Eigen::VectorXd integrate(const Eigen::MatrixXd& rates, Eigen::Index joint) const {
     return make([&](Eigen::Index from, Eigen::Index to) {
       double sum = 0;

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
+#include "base/hash.hpp"
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "problems/logs/bag.hpp"
@@ -141,7 +142,11 @@ MotionLog read_log(const std::filesystem::path& file, const RobotModel& robot,
   const ReadStep step(fmt::format("the log '{}'", file.string()));
   const std::filesystem::path path = folder_exists(file) ? find_bag_file(file) : file;
   check_write_ahead_log(path);
-  return parse_log(read_input(path, kLargestLog_bytes), path.string(), robot, options);
+  std::string content = read_input(path, kLargestLog_bytes);
+  std::string sha256 = calc_sha256_hex(content);
+  MotionLog log = parse_log(std::move(content), path.string(), robot, options);
+  log.sha256 = std::move(sha256);
+  return log;
 }
 
 }  // namespace armwright

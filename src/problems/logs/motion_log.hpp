@@ -21,6 +21,7 @@ namespace armwright {
 // and not resampled. Matrices have one row per sample and one column per joint.
 struct MotionLog {
   std::string name;             // of the file
+  std::string sha256;           // of the file as it lies; read_log() sets it
   std::vector<double> times_s;  // strictly increasing
   Eigen::MatrixXd positions;    // rad or m; of the motors, if the log also has link positions
   Eigen::MatrixXd efforts;      // N m or N

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <limits>
 
+#include "base/hash.hpp"
 #include "base/text.hpp"
 #include "problems/logs/bag_writer.hpp"
 #include "problems/logs/log_motion.hpp"
@@ -402,7 +403,9 @@ TEST(BagLog, AFolderStandsForItsBag) {
   std::ofstream(folder / "run_0.mcap", std::ios::binary)
       << make_mcap(kStateTopic, make_states(), "");
   const RobotModel robot = make_log_robot();
-  expect_states(read_log(folder.path(), robot));
+  const MotionLog log = read_log(folder.path(), robot);
+  expect_states(log);
+  EXPECT_EQ(log.sha256, calc_sha256_hex(make_mcap(kStateTopic, make_states(), "")));
   std::ofstream(folder / "run_1.db3.zstd") << "x";
   EXPECT_EQ(
       error_of(ErrorKind::bad_data, [&] { read_log(folder.path(), robot); }),
