@@ -92,8 +92,10 @@ std::string write_fitted(const FittedPlant& fitted) {
     }
   }
   return fmt::format(
-      "\n# What the logs leave uncertain: a normal distribution. The covariance is its lower\n"
-      "# triangle, row by row.\n[identification]\nlogs = {}\ndelay_s = {}\nparameters = {}\n"
+      "\n# The logs leave the parameters uncertain, with a normal distribution. Its covariance "
+      "stands\n"
+      "# here as the lower triangle, row by row.\n[identification]\nlogs = {}\ndelay_s = "
+      "{}\nparameters = {}\n"
       "values = {}\ncovariance = {}\n",
       write_texts(fitted.logs), format_exact(fitted.delay_s), write_texts(names),
       write_numbers(fitted.values), write_numbers(lower));
