@@ -3,18 +3,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "base/toml_text.hpp"
-#include "cli/commands/plan_options.hpp"
 #include "cli/identification/identification_commands.hpp"
+#include "cli/identification/plant_run.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
-#include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/table.hpp"
 #include "cli/terminal/terminal.hpp"
@@ -22,9 +21,6 @@
 #include "problems/config/plant_file.hpp"
 #include "problems/identification/excitation_problem.hpp"
 #include "study/identification/excitation_report.hpp"
-#include "study/run/run.hpp"
-#include "study/run/run_folder.hpp"
-#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {
@@ -45,30 +41,18 @@ docs/identification.md explains the figures.)";
 constexpr const char* kExciteProblem = "excite";
 constexpr double kLowestRate_hz = 10, kHighestRate_hz = 10000;
 
-struct ExciteOptions : PlanOptions {
-  std::string fit, duration, harmonics, criterion, payload, payload_com, simulated;
+struct ExciteOptions : PlantRunOptions {
+  std::string duration, harmonics, criterion, simulated;
   std::string rate = "100", noise_seed = "1";
-  std::string jobs, time_limit;
-  FolderOptions folder;
-  bool json = false;
-  bool quiet = false;
 };
 
 // Turns the flags into settings.
 void set_excitation(ExciteOptions& options) {
-  const auto add = [&](const char* key, const std::string& given, const std::string& value) {
-    if (!given.empty()) {
-      options.overrides.set.push_back(fmt::format("{}={}", key, value));
-    }
-  };
-  std::vector<std::string> groups = split(options.fit, ',');
-  std::ranges::transform(groups, groups.begin(), [](const auto& text) { return quote_toml(text); });
-  add("excitation.fit", options.fit, "[" + join(groups, ", ") + "]");
-  add("excitation.duration_s", options.duration, options.duration);
-  add("excitation.harmonics", options.harmonics, options.harmonics);
-  add("excitation.criterion", options.criterion, quote_toml(options.criterion));
-  add("excitation.payload_kg", options.payload, options.payload);
-  add("excitation.payload_com_m", options.payload_com, "[" + options.payload_com + "]");
+  constexpr const char* kTable = "excitation";
+  options.add_shared_settings(kTable);
+  options.add_setting(kTable, "duration_s", options.duration, options.duration);
+  options.add_setting(kTable, "harmonics", options.harmonics, options.harmonics);
+  options.add_setting(kTable, "criterion", options.criterion, quote_toml(options.criterion));
 }
 
 double read_rate(const std::string& text) {
@@ -176,36 +160,19 @@ int run_excite(ExciteOptions options, Session& session) {
   const double rate_hz = read_rate(options.rate);
   const auto noise_seed = static_cast<std::uint64_t>(
       parse_count("--noise-seed", options.noise_seed, 0, std::numeric_limits<std::int64_t>::max()));
-  RunRequest request;
-  request.jobs = parse_jobs(options.jobs);
-  apply_time_limit(options.time_limit, session.stop);
-  request.plan = options.make_plan();
+  const RunRequest request = options.make_request(session);
   const auto* problem = dynamic_cast<const ExcitationProblem*>(request.plan.problem.problem.get());
   const ExcitationConfig& config = problem->config();
   RobotModel real = config.robot;
   if (!options.simulated.empty()) {
     load_plant(options.simulated, real);
   }
-  request.folder = options.folder.choose(make_run_name(request.plan));
-  request.command_line = session.command_line;
-  if (!options.quiet) {
-    write_message(fmt::format("{}: {} parameters, optimizer {}, folder {}",
-                              request.plan.problem.name, problem->parameters().size(),
-                              request.plan.optimizer.name, request.folder.string()));
-  }
-  catch_signals(session.stop);
-  ProgressBar bar(options.quiet, get_scalar_quantity(problem->description().objectives));
-  LockedObserver observer(bar);
-  const auto result = execute_run(request, session.stop, observer);
-  bar.clear();
+  const auto result =
+      options.execute(request, problem->parameters().size(), {}, "no motion", session);
   if (!result) {
     return end_stopped(session, request.command_line);
   }
-  if (!result->winner) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("no motion could be evaluated: {}", result->first_failure));
-  }
-  std::vector<double> x = result->judged[*result->winner].candidate.x, start;
+  std::vector<double> x = result->judged[*result->winner].candidate.x;
   const double factor = problem->shrink_to_limits(x);
   if (factor == 0) {
     throw Error(ErrorKind::bad_data,
@@ -214,10 +181,8 @@ int run_excite(ExciteOptions options, Session& session) {
                             "excitation.effort_share, excitation.position_share",
                             sanitize(request.folder.string())));
   }
-  for (const DecisionVariable& variable : problem->description().variables) {
-    start.push_back(variable.start);
-  }
-  const AssessedMotion before = problem->assess_finely(start);
+  const AssessedMotion before =
+      problem->assess_finely(list_starts(problem->description().variables));
   const AssessedMotion checked = problem->assess_finely(x);
   const AssessedMotion motion = problem->assess(x, count_samples(*problem, rate_hz));
   std::string log;
@@ -286,13 +251,7 @@ void add_excite(CLI::App& app, Session& session) {
       ->type_name("FILE");
   command->add_option("--noise-seed", options->noise_seed, "Seed of that log's noise (default: 1)")
       ->type_name("N");
-  options->add_to(*command);
-  options->overrides.add_to(*command);
-  add_jobs_flag(*command, options->jobs);
-  add_time_limit_flag(*command, options->time_limit);
-  options->folder.add_to(*command, "run", "results/ROBOT-motion-OPTIMIZER-seedN");
-  command->add_flag("--json", options->json, "Print excitation.json")->group("Output");
-  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
+  options->add_run_flags(*command, "results/ROBOT-motion-OPTIMIZER-seedN", "excitation.json");
   command->callback([options, &session] {
     session.shares_work = true;
     session.action = [options, &session] { return run_excite(*options, session); };

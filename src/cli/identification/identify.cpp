@@ -3,27 +3,21 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "base/toml_text.hpp"
-#include "cli/commands/plan_options.hpp"
 #include "cli/identification/identification_commands.hpp"
+#include "cli/identification/plant_run.hpp"
 #include "cli/terminal/arguments.hpp"
-#include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/identification_view.hpp"
 #include "cli/views/result_view.hpp"
 #include "problems/identification/identification_problem.hpp"
-#include "study/identification/fit_report.hpp"
-#include "study/run/run.hpp"
 #include "study/run/run_folder.hpp"
-#include "study/run/run_lock.hpp"
-#include "study/run/run_observer.hpp"
 
 namespace armwright {
 namespace {
@@ -42,66 +36,40 @@ plant.toml, which robots take as their plant, and identification.json with inter
 Logs of --validate are held back: they only judge. docs/identification.md explains formats, groups and figures.)";
 
 constexpr const char* kIdentifyProblem = "identify";
-constexpr std::size_t kMostJson_bytes = std::size_t{64} << 20;
 constexpr const char* kIdentifyOptimizer = "ceres:lm";
 
-struct IdentifyOptions : PlanOptions {
+struct IdentifyOptions : PlantRunOptions {
   std::vector<std::string> logs, held_back, columns, units, ratios, signs;
-  std::string fit, joints, topic, cutoff, payload, payload_com;
-  std::string jobs, time_limit;
-  FolderOptions folder;
-  bool json = false;
-  bool quiet = false;
+  std::string joints, topic, cutoff;
 };
 
-std::string write_list(const std::vector<std::string>& words) {
-  std::vector<std::string> quoted;
-  std::ranges::transform(words, std::back_inserter(quoted), quote_toml);
-  return "[" + join(quoted, ", ") + "]";
+std::string write_files(const std::vector<std::string>& files) {
+  std::vector<std::string> absolute;
+  for (const std::string& file : files) {
+    absolute.push_back(std::filesystem::absolute(file).lexically_normal().string());
+  }
+  return write_list(absolute);
 }
 
 // Turns the flags into settings of [identification].
 void add_settings(IdentifyOptions& options) {
-  const auto add = [&](const char* key, const std::string& value) {
-    options.overrides.set.push_back(fmt::format("identification.{}={}", key, value));
-  };
-  const auto add_files = [&](const char* key, const std::vector<std::string>& files) {
-    std::vector<std::string> absolute;
-    for (const std::string& file : files) {
-      absolute.push_back(std::filesystem::absolute(file).lexically_normal().string());
+  constexpr const char* kTable = "identification";
+  const auto add_list = [&](const char* key, const std::vector<std::string>& words) {
+    if (!words.empty()) {
+      options.add_setting(kTable, key, key, write_list(words));
     }
-    add(key, write_list(absolute));
   };
-  add_files("logs", options.logs);
-  add_files("validate", options.held_back);
-  const std::pair<const char*, const std::vector<std::string>*> lists[] = {
-      {"columns", &options.columns},
-      {"units", &options.units},
-      {"gear_ratios", &options.ratios},
-      {"signs", &options.signs}};
-  for (const auto& [key, words] : lists) {
-    if (!words->empty()) {
-      add(key, write_list(*words));
-    }
-  }
-  if (!options.fit.empty()) {
-    add("fit", write_list(split(options.fit, ',')));
-  }
-  if (!options.joints.empty()) {
-    add("joints", write_list(split(options.joints, ',')));
-  }
-  if (!options.topic.empty()) {
-    add("topic", quote_toml(options.topic));
-  }
-  if (!options.cutoff.empty()) {
-    add("cutoff_hz", options.cutoff);
-  }
-  if (!options.payload.empty()) {
-    add("payload_kg", options.payload);
-  }
-  if (!options.payload_com.empty()) {
-    add("payload_com_m", "[" + options.payload_com + "]");
-  }
+  // Both replace the lists of the shipped problem, which names the recordings of the KR300.
+  options.add_setting(kTable, "logs", "logs", write_files(options.logs));
+  options.add_setting(kTable, "validate", "validate", write_files(options.held_back));
+  add_list("columns", options.columns);
+  add_list("units", options.units);
+  add_list("gear_ratios", options.ratios);
+  add_list("signs", options.signs);
+  options.add_shared_settings(kTable);
+  options.add_setting(kTable, "joints", options.joints, write_list(split(options.joints, ',')));
+  options.add_setting(kTable, "topic", options.topic, quote_toml(options.topic));
+  options.add_setting(kTable, "cutoff_hz", options.cutoff, options.cutoff);
 }
 
 int run_identify(IdentifyOptions options, Session& session) {
@@ -111,32 +79,15 @@ int run_identify(IdentifyOptions options, Session& session) {
     options.optimizer = kIdentifyOptimizer;
     options.opt = {"derivatives=exact", "transform=none"};
   }
-  RunRequest request;
-  request.jobs = parse_jobs(options.jobs);
-  apply_time_limit(options.time_limit, session.stop);
-  request.plan = options.make_plan();
-  const auto* problem = find_identification(*request.plan.problem.problem);
-  request.folder = options.folder.choose(make_run_name(request.plan));
-  request.command_line = session.command_line;
-  if (!options.quiet) {
-    write_message(fmt::format("{}: {} parameters, optimizer {}, folder {}",
-                              request.plan.problem.name, problem->parameters().size(),
-                              request.plan.optimizer.name, request.folder.string()));
-    std::ranges::for_each(problem->notes(), write_message);
-  }
-  catch_signals(session.stop);
-  ProgressBar bar(options.quiet, get_scalar_quantity(problem->description().objectives));
-  LockedObserver observer(bar);
-  const auto result = execute_run(request, session.stop, observer);
-  bar.clear();
+  const RunRequest request = options.make_request(session);
+  const IdentificationProblem& problem = *find_identification(*request.plan.problem.problem);
+  const auto result = options.execute(request, problem.parameters().size(), problem.notes(),
+                                      "no set of parameters", session);
   if (!result) {
     return end_stopped(session, request.command_line);
   }
-  if (!result->winner) {
-    throw Error(ErrorKind::bad_data,
-                fmt::format("no set of parameters could be evaluated: {}", result->first_failure));
-  }
-  const std::string report = read_file(request.folder / kIdentificationFile, kMostJson_bytes);
+  const std::string report =
+      read_file(request.folder / kIdentificationFile, kIdentificationLimit_bytes);
   if (options.json) {
     write_stdout(report);
     return get_result_code(*result);
@@ -196,13 +147,7 @@ void add_identify(CLI::App& app, Session& session) {
       ->add_option("--payload-com", options->payload_com,
                    "Its centre of mass in the tip's frame (default: 0,0,0)")
       ->type_name("X,Y,Z");
-  options->add_to(*command);
-  options->overrides.add_to(*command);
-  add_jobs_flag(*command, options->jobs);
-  add_time_limit_flag(*command, options->time_limit);
-  options->folder.add_to(*command, "run", "results/ROBOT-plant-OPTIMIZER-seedN");
-  command->add_flag("--json", options->json, "Print identification.json")->group("Output");
-  command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
+  options->add_run_flags(*command, "results/ROBOT-plant-OPTIMIZER-seedN", "identification.json");
   command->callback([options, &session] {
     session.shares_work = true;
     session.action = [options, &session] { return run_identify(*options, session); };
