@@ -109,9 +109,7 @@ int evaluate_own(const LoadedProblem& loaded, const OwnEvaluation& options, Sess
   const auto& variables = problem.description().variables;
   Evaluated evaluated;
   if (options.design == kStartDesign) {
-    for (const DecisionVariable& variable : variables) {
-      evaluated.x.push_back(variable.start);
-    }
+    evaluated.x = list_starts(variables);
   } else {
     evaluated.x = read_values(load_values(options.design), options.design, variables);
   }

@@ -58,10 +58,7 @@ class GeneticAlgorithm : public Optimizer {
  private:
   std::vector<Genome> make_initial_population(std::span<const DecisionVariable> variables,
                                               RandomStream& random) const {
-    Genome prototype;
-    for (const DecisionVariable& variable : variables) {
-      prototype.push_back(variable.start);
-    }
+    const Genome prototype = list_starts(variables);
     std::vector<Genome> population(population_size_, prototype);
     for (std::size_t i = include_prototype_ ? 1 : 0; i < population.size(); ++i) {
       mutate(population[i], variables, initial_mutation_, random);

@@ -134,13 +134,8 @@ void load_excitation(const ConfigTable& table, LoadedProblem& loaded) {
                fmt::format("it must hold one number, or {}, one per joint of the robot", joints));
   }
   config.floor_m = its.find(kExcitationFloor);
-  const double base_m = config.robot.joints.front().origin.translation().z();
-  if (config.floor_m && *config.floor_m > base_m) {
-    its.refuse(
-        kExcitationFloor,
-        fmt::format("the arm's first joint is lower, at {:.6g} m; the floor must not be above "
-                    "it (heights are z in the frame of the root link)",
-                    base_m));
+  if (config.floor_m) {
+    check_floor(its, kExcitationFloor, *config.floor_m, config.robot);
   }
   name_robot_file(resolve_named(robot, kRobotUrdf, "robots"), [&] {
     check_limits_of(config.robot);

@@ -6,9 +6,6 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/file.hpp"
-#include "base/hash.hpp"
-#include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "problems/config/plant_file.hpp"
 #include "problems/config/problem_readers.hpp"
@@ -61,12 +58,12 @@ const Setting<std::string> kLogTopic{"topic", "",
 const Setting<double> kLogCutoff{
     "cutoff_hz",
     {.lower = 0.1, .upper = 1000},
-    8,
+    Conditioning{}.cutoff_hz,
     "positions and efforts are filtered below this frequency, without phase"};
-const Setting<double> kLogCut{
-    "cut_s", {.lower = 0, .upper = 1000}, 0.24, "time that is cut at both ends of a log"};
-
-constexpr std::size_t kLogLimit_bytes = std::size_t{2} << 30;
+const Setting<double> kLogCut{"cut_s",
+                              {.lower = 0, .upper = 1000},
+                              Conditioning{}.cut_s,
+                              "time that is cut at both ends of a log"};
 
 const Setting<double> kPriorScale{"prior_scale",
                                   {.lower = 0, .upper = 1e6},
@@ -118,10 +115,8 @@ std::vector<IdentificationConfig::Log> read_logs(const ConfigTable& table,
   for (const std::string& name : table.get(setting)) {
     const std::filesystem::path file =
         std::filesystem::absolute(table.file().parent_path() / name).lexically_normal();
-    const ReadStep step(fmt::format("the log '{}'", sanitize(name)));
-    MotionLog log = read_log(file, robot, options);
-    loaded.input_hashes[file.filename().string()] =
-        calc_sha256_hex(read_file(file, kLogLimit_bytes));
+    const MotionLog log = read_log(file, robot, options);
+    loaded.input_hashes[std::filesystem::path(log.name).filename().string()] = log.sha256;
     logs.push_back({log.name, condition(log, conditioning)});
     for (const auto& its : {log.notes, logs.back().samples.notes}) {
       for (const std::string& note : its) {
@@ -201,10 +196,8 @@ void load_identification(const ConfigTable& table, LoadedProblem& loaded) {
   }
   const auto fitted = static_cast<int>(config.fitted.size());
   loaded.sets.validation_cases = fitted;
-  loaded.sets.test_cases = std::max(1, static_cast<int>(config.held_back.size()));
-  if (config.held_back.empty()) {
-    loaded.sets.test_cases = fitted;
-  }
+  loaded.sets.test_cases =
+      config.held_back.empty() ? fitted : static_cast<int>(config.held_back.size());
   loaded.sets.training_cases = fitted;
   const auto problem = std::make_shared<IdentificationProblem>(config);
   const std::vector<std::string> faults = find_effort_faults(*problem);

@@ -101,6 +101,9 @@ struct ReadRobot {
 };
 // Records the robot's files as inputs.
 ReadRobot read_robot(const ConfigTable& table, LoadedProblem& loaded);
+// Refuses a floor above the arm's base.
+void check_floor(const ConfigTable& table, const Setting<double>& setting, double floor_m,
+                 const RobotModel& robot);
 // Sets the problem and the hashes of its inputs. Throws Error{bad_data} for a file that a table
 // names and that is wrong.
 void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,

@@ -139,17 +139,6 @@ std::shared_ptr<const TrackingProblem> make_tracking(TrackingConfig config,
   }
 }
 
-// Refuses a floor above the arm's base.
-void check_floor(const ConfigTable& task, const TrackingConfig& config) {
-  const double base_m = config.robot.joints.front().origin.translation().z();
-  if (config.task.floor_m && *config.task.floor_m > base_m) {
-    task.refuse(kTaskFloor,
-                fmt::format("the arm's first joint is lower, at {:.6g} m; the floor must not be "
-                            "above it (heights are z in the frame of the root link)",
-                            base_m));
-  }
-}
-
 // Refuses, in [physics], steps that cannot simulate the swinging of an elastic joint. `plant` is the
 // robot's plant file, or empty.
 void check_elasticity(const ConfigTable& physics, const TrackingConfig& config,
@@ -357,6 +346,17 @@ void name_robot_file(const std::filesystem::path& urdf, const std::function<void
   }
 }
 
+void check_floor(const ConfigTable& table, const Setting<double>& setting, double floor_m,
+                 const RobotModel& robot) {
+  const double base_m = robot.joints.front().origin.translation().z();
+  if (floor_m > base_m) {
+    table.refuse(setting,
+                 fmt::format("the arm's first joint is lower, at {:.6g} m; the floor must not be "
+                             "above it (heights are z in the frame of the root link)",
+                             base_m));
+  }
+}
+
 ReadRobot read_robot(const ConfigTable& table, LoadedProblem& loaded) {
   return load_robot(table, resolve_named(table, kRobotUrdf, "robots"), loaded);
 }
@@ -387,7 +387,9 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
     task.refuse(kTaskHome, fmt::format("it must hold {} numbers, one a joint of the robot",
                                        config.robot.joint_count()));
   }
-  check_floor(task, config);
+  if (config.task.floor_m) {
+    check_floor(task, kTaskFloor, *config.task.floor_m, config.robot);
+  }
   config.workspace = read_workspace(table.get_table_or_empty(kWorkspaceSettings));
   name_robot_file(urdf, [&] { read_path_and_proposal(table, config, loaded); });
   read_drives(control, config.task);  // they need the final control period

@@ -80,16 +80,12 @@ std::optional<std::pair<Index, Index>> find_swapped(const IdentificationProblem&
 
 std::vector<std::string> find_effort_faults(const IdentificationProblem& problem) {
   std::vector<std::string> faults;
-  std::vector<double> own;
-  for (const PlantParameter& parameter : problem.parameters()) {
-    own.push_back(get_parameter(problem.robot(), parameter));
-  }
   const auto name = [&](Index joint) {
     return sanitize(problem.robot().joints[static_cast<std::size_t>(joint)].name);
   };
   const auto check = [&](const FittedMotion& motion) {
     const Index n = motion.efforts.cols();
-    const Eigen::MatrixXd model = calc_own_efforts(motion.model, n, own);
+    const Eigen::MatrixXd model = calc_own_efforts(motion.model, n, problem.own_values());
     const std::string log = sanitize(motion.name);
     const auto efforts = find_swapped(problem, motion, model, false);
     if (efforts) {
@@ -121,10 +117,8 @@ std::vector<std::string> find_effort_faults(const IdentificationProblem& problem
   for (const FittedMotion& motion : problem.fitted()) {
     check(motion);
   }
-  if (problem.has_held_back()) {
-    for (const FittedMotion& motion : problem.judged()) {
-      check(motion);
-    }
+  for (const FittedMotion& motion : problem.held_back()) {
+    check(motion);
   }
   return faults;
 }

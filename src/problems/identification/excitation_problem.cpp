@@ -18,7 +18,8 @@ namespace {
 using Eigen::Index;
 
 constexpr int kRandomStates = 400;
-// Of A^T A with columns of length 1 over random states: smaller eigenvalues are rounding.
+// The smallest eigenvalue that is not rounding, as a share of the largest, of A^T A with columns of
+// length 1 over random states.
 constexpr double kNotTold = 1e-10;
 // A parameter counts as told by itself if at most this share of its square lies outside of the basis.
 constexpr double kOutside = 1e-6;
@@ -52,9 +53,7 @@ ExcitationProblem::ExcitationProblem(ExcitationConfig config) : config_(std::mov
   }
   config_.robot.base.visuals.clear();
   parameters_ = list_parameters(config_.robot, config_.groups);
-  for (const PlantParameter& parameter : parameters_) {
-    own_.push_back(get_parameter(config_.robot, parameter));
-  }
+  own_ = get_parameters(config_.robot, parameters_);
   find_basis();
   training_times_s_ = make_times(kTrainingSamples);
   training_shape_ = make_shape(training_times_s_);
@@ -331,14 +330,6 @@ void ExcitationProblem::make_variables() {
   }
 }
 
-std::vector<double> ExcitationProblem::get_start() const {
-  std::vector<double> start;
-  for (const DecisionVariable& variable : description_.variables) {
-    start.push_back(variable.start);
-  }
-  return start;
-}
-
 // Starts with a random motion around the random posture that keeps the largest distance from the
 // limits; its amplitudes are halved until it keeps all limits.
 void ExcitationProblem::set_start() {
@@ -347,11 +338,11 @@ void ExcitationProblem::set_start() {
   RandomStream random("excitation/start", 0);
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(1);
   const Shape shape = make_shape(rest);
-  std::vector<double> best = get_start();
+  std::vector<double> best = list_starts(variables);
   double least = std::numeric_limits<double>::infinity();
   std::size_t worst = 0;
   for (int posture = 0; posture < kPostures; ++posture) {
-    std::vector<double> x = get_start();
+    std::vector<double> x = list_starts(variables);
     for (std::size_t i = 0; posture > 0 && i < x.size(); i += numbers) {
       x[i] = random.uniform(variables[i].lower, variables[i].upper);
     }
@@ -447,7 +438,7 @@ CaseRecord ExcitationProblem::record_case(std::span<const double> x, const CaseB
     };
     add(" position", unit, motion.motion.positions);
     add(" speed", unit + "/s", motion.motion.rates);
-    add(" effort", joint.kind == JointKind::revolute ? "N m" : "N", motion.efforts);
+    add(" effort", get_effort_unit(joint.kind), motion.efforts);
   }
   return record;
 }

@@ -125,7 +125,6 @@ class ExcitationProblem final : public Problem {
   void find_basis();
   void make_variables();
   void set_start();
-  std::vector<double> get_start() const;
 
   ExcitationConfig config_;
   std::vector<PlantParameter> parameters_;

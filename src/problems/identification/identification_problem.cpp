@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "problems/identification/linear_start.hpp"
 #include "problems/identification/residual_memory.hpp"
@@ -97,55 +95,6 @@ Eigen::VectorXd calc_deviations(const std::vector<FittedMotion>& motions,
   return (squares / count - (sum / count).cwiseAbs2()).cwiseMax(0).cwiseSqrt();
 }
 
-// Returns parameters after a few steps of Gauss and Newton from the start, which by itself can leave
-// large residuals: a payload's has the ten numbers of the last link in its place, which take a part of
-// what the last rotor explains. Optimizers that begin there were seen to end a standard error away from
-// the minimum, in the flat valley of such pairs.
-std::vector<double> fit_roughly(const IdentificationProblem& problem) {
-  constexpr int kMostSteps = 6;
-  constexpr double kLeastGain = 0.01;
-  const auto& variables = problem.description().variables;
-  std::vector<double> x;
-  for (const DecisionVariable& variable : variables) {
-    x.push_back(variable.start);
-  }
-  const auto p = static_cast<Index>(x.size());
-  double before = std::numeric_limits<double>::infinity();
-  std::vector<double> next = x;
-  for (int step = 0; step < kMostSteps; ++step) {
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p, p);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(p);
-    double square = 0;
-    for (const FittedMotion& motion : problem.fitted()) {
-      const IdentificationProblem::Residuals residuals = problem.calc_residuals(motion, next, true);
-      normal += residuals.jacobian.transpose() * residuals.jacobian;
-      right -= residuals.jacobian.transpose() * residuals.values;
-      square += residuals.values.squaredNorm();
-    }
-    if (!(square < before)) {
-      break;
-    }
-    x = next;
-    if (square > (1 - kLeastGain) * before) {
-      break;
-    }
-    before = square;
-    const Eigen::VectorXd lengths =
-        normal.diagonal().cwiseSqrt().cwiseMax(std::numeric_limits<double>::min());
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(1e-9);
-    solver.compute(lengths.cwiseInverse().asDiagonal() * normal *
-                   lengths.cwiseInverse().asDiagonal());
-    const Eigen::VectorXd change =
-        solver.solve(right.cwiseQuotient(lengths)).cwiseQuotient(lengths);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      next[i] =
-          std::clamp(x[i] + change[static_cast<Index>(i)], variables[i].lower, variables[i].upper);
-    }
-  }
-  return x;
-}
-
 }  // namespace
 
 IdentificationProblem::IdentificationProblem(const IdentificationConfig& config)
@@ -164,6 +113,7 @@ IdentificationProblem::IdentificationProblem(const IdentificationConfig& config)
     }
   }
   parameters_ = list_parameters(robot_, config.groups, encoders);
+  own_ = get_parameters(robot_, parameters_);
   for (auto [logs, motions] :
        {std::pair{&config.fitted, &fitted_}, {&config.held_back, &held_back_}}) {
     for (const IdentificationConfig::Log& log : *logs) {
@@ -183,7 +133,7 @@ IdentificationProblem::IdentificationProblem(const IdentificationConfig& config)
   description_.objectives = {{"mean squared error", ""}};
   for (const Joint& joint : robot_.joints) {
     description_.metrics.push_back(
-        {fmt::format("{}.rms", joint.name), joint.kind == JointKind::revolute ? "N m" : "N"});
+        {fmt::format("{}.rms", joint.name), get_effort_unit(joint.kind)});
   }
   description_.cost_unit = "motion of a log";
   description_.has_residuals = true;
@@ -244,7 +194,7 @@ IdentificationProblem::Residuals IdentificationProblem::calc_residuals(const Fit
     if (priors_[p] > 0) {
       const auto at = static_cast<std::size_t>(p);
       const double weight = prior_weight_ / priors_[p];
-      residuals.values[row] = weight * (x[at] - get_parameter(robot_, parameters_[at]));
+      residuals.values[row] = weight * (x[at] - own_[at]);
       if (jacobian) {
         residuals.jacobian(row, p) = weight;
       }
@@ -372,7 +322,7 @@ CaseRecord IdentificationProblem::record_case(std::span<const double> x, const C
   }
   for (Index i = 0; i < n; ++i) {
     const Joint& joint = robot_.joints[static_cast<std::size_t>(i)];
-    const std::string unit = joint.kind == JointKind::revolute ? "N m" : "N";
+    const std::string unit = get_effort_unit(joint.kind);
     CaseRecord::Series recorded{{joint.name + " recorded", unit}, {}};
     CaseRecord::Series modelled{{joint.name + " model", unit}, {}};
     for (Index k = 0; k < motion.efforts.rows(); ++k) {

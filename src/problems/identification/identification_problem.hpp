@@ -74,14 +74,15 @@ class IdentificationProblem final : public Problem {
   const RobotModel& plain_robot() const { return plain_; }
   double gravity_m_per_s2() const { return gravity_m_per_s2_; }
   const std::vector<PlantParameter>& parameters() const { return parameters_; }
+  const std::vector<double>& own_values() const { return own_; }  // of the robot, before the fit
   const std::vector<FittedMotion>& fitted() const { return fitted_; }
+  const std::vector<FittedMotion>& held_back() const { return held_back_; }
   // The motions of the test: those that are held back or, without any, those that are fitted.
   const std::vector<FittedMotion>& judged() const {
     return held_back_.empty() ? fitted_ : held_back_;
   }
-  // What was done to the logs, for the user.
+  // Notes for the user say how the logs were read and filtered.
   const std::vector<std::string>& notes() const { return notes_; }
-  bool has_held_back() const { return !held_back_.empty(); }
   // The prior deviations d, one per parameter; 0: nothing is known.
   const Eigen::VectorXd& priors() const { return priors_; }
   // sqrt(v).
@@ -104,6 +105,7 @@ class IdentificationProblem final : public Problem {
   RobotModel robot_, plain_;
   double gravity_m_per_s2_;
   std::vector<PlantParameter> parameters_;
+  std::vector<double> own_;
   std::vector<FittedMotion> fitted_, held_back_;
   Eigen::VectorXd sigma_, delta_, priors_;
   double prior_weight_ = 0;

@@ -166,9 +166,13 @@ void set_payload_start(const RobotModel& robot, std::span<const PlantParameter> 
 void set_stiffness_start(const IdentificationProblem& problem,
                          std::vector<DecisionVariable>& variables) {
   const auto& parameters = problem.parameters();
-  std::vector<double> x;
-  for (const DecisionVariable& variable : variables) {
-    x.push_back(variable.start);
+  if (std::ranges::find(parameters, Kind::stiffness, &PlantParameter::kind) == parameters.end()) {
+    return;
+  }
+  const std::vector<double> x = list_starts(variables);
+  std::vector<Eigen::VectorXd> efforts;  // on the links, of each motion
+  for (const FittedMotion& motion : problem.fitted()) {
+    efforts.push_back(motion.model.calc(x, false).link);
   }
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     if (parameters[p].kind != Kind::stiffness) {
@@ -177,11 +181,11 @@ void set_stiffness_start(const IdentificationProblem& problem,
     const auto i = static_cast<Index>(parameters[p].joint);
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
     Eigen::Vector2d right = Eigen::Vector2d::Zero();
-    for (const FittedMotion& motion : problem.fitted()) {
-      const PlantModel::Efforts model = motion.model.calc(x, false);
+    for (std::size_t m = 0; m < efforts.size(); ++m) {
+      const FittedMotion& motion = problem.fitted()[m];
       const Index n = motion.efforts.cols();
       for (Index k = 0; k < motion.efforts.rows(); ++k) {
-        const Eigen::Vector2d row(model.link[k * n + i], 1);
+        const Eigen::Vector2d row(efforts[m][k * n + i], 1);
         normal += row * row.transpose();
         right += row * motion.deflections(k, i);
       }
@@ -272,7 +276,7 @@ void set_linear_start(const IdentificationProblem& problem,
   if (count > 0) {
     std::vector<double> own;
     for (std::size_t p = 0; p < parameters.size(); ++p) {
-      own.push_back(move_into(variables[p], get_parameter(problem.robot(), parameters[p])));
+      own.push_back(move_into(variables[p], problem.own_values()[p]));
     }
     // The normal equations of all motions, in units of sigma.
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
@@ -304,8 +308,7 @@ void set_linear_start(const IdentificationProblem& problem,
         const double weight = std::pow(problem.prior_weight() / deviation, 2) *
                               static_cast<double>(problem.fitted().size()) * samples;
         normal(static_cast<Index>(c), static_cast<Index>(c)) += weight;
-        right[static_cast<Index>(c)] +=
-            weight * (get_parameter(problem.robot(), parameters[p]) - own[p]);
+        right[static_cast<Index>(c)] += weight * (problem.own_values()[p] - own[p]);
       }
     }
     std::vector<std::pair<double, double>> ranges(
@@ -326,6 +329,40 @@ void set_linear_start(const IdentificationProblem& problem,
     }
   }
   set_stiffness_start(problem, variables);
+}
+
+std::vector<double> fit_roughly(const IdentificationProblem& problem) {
+  constexpr int kMostSteps = 6;
+  constexpr double kLeastGain = 0.01;
+  const auto& variables = problem.description().variables;
+  std::vector<double> x = list_starts(variables);
+  const auto p = static_cast<Index>(x.size());
+  double before = std::numeric_limits<double>::infinity();
+  std::vector<double> next = x;
+  for (int step = 0; step < kMostSteps; ++step) {
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p, p);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(p);
+    double square = 0;
+    for (const FittedMotion& motion : problem.fitted()) {
+      const IdentificationProblem::Residuals residuals = problem.calc_residuals(motion, next, true);
+      normal += residuals.jacobian.transpose() * residuals.jacobian;
+      right -= residuals.jacobian.transpose() * residuals.values;
+      square += residuals.values.squaredNorm();
+    }
+    if (!(square < before)) {
+      break;
+    }
+    x = next;
+    if (square > (1 - kLeastGain) * before) {
+      break;
+    }
+    before = square;
+    const Eigen::VectorXd change = solve_even(normal, right);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      next[i] = move_into(variables[i], x[i] + change[static_cast<Index>(i)]);
+    }
+  }
+  return x;
 }
 
 }  // namespace armwright

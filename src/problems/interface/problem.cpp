@@ -55,6 +55,14 @@ std::string format_value(const DecisionVariable& variable, double value) {
   return variable.choices.at(place);
 }
 
+std::vector<double> list_starts(std::span<const DecisionVariable> variables) {
+  std::vector<double> starts;
+  for (const DecisionVariable& variable : variables) {
+    starts.push_back(variable.start);
+  }
+  return starts;
+}
+
 bool has_discrete(std::span<const DecisionVariable> variables) {
   return std::ranges::any_of(variables, [](const DecisionVariable& variable) {
     return variable.type != VariableType::real;

@@ -215,6 +215,8 @@ double settle_value(const DecisionVariable& variable, double value);
 // Returns the value as a user reads it: the word of a category, or the shortest text of the number
 // that reads back the same.
 std::string format_value(const DecisionVariable& variable, double value);
+// Returns the start of every variable.
+std::vector<double> list_starts(std::span<const DecisionVariable> variables);
 // Returns whether a problem has a variable that is not real.
 bool has_discrete(std::span<const DecisionVariable> variables);
 

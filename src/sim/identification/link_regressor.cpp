@@ -57,7 +57,7 @@ LinkRegressor::LinkRegressor(const RobotModel& robot, double gravity_m_per_s2)
 void LinkRegressor::calc(std::span<const double> q, std::span<const double> v,
                          std::span<const double> a, Eigen::Ref<Eigen::MatrixXd> y) const {
   y.setZero();
-  // Of each link, in its own frame: the pose relative to the link before, angular velocity and
+  // Each link has, in its own frame, a pose relative to the link before, an angular velocity and
   // acceleration, and the acceleration of its origin minus gravity.
   std::vector<Matrix3d> turns(joints_.size());
   std::vector<Vector3d> places(joints_.size());

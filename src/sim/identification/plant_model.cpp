@@ -10,7 +10,7 @@ namespace {
 
 using Kind = PlantParameter::Kind;
 
-// Of a counterbalance's corrections, for difference quotients of a linear function.
+// The step of difference quotients by a counterbalance's corrections. The efforts are linear in them.
 constexpr double kStep = 1.0 / 64;
 
 using Eigen::Index;

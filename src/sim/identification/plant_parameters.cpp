@@ -15,7 +15,7 @@ using Kind = PlantParameter::Kind;
 using Eigen::Matrix3d;
 using Eigen::Matrix4d;
 
-// Of counterbalances: what an identification may make of them at most.
+// The ends of the range that an identification gives to a counterbalance's corrections.
 constexpr double kLeastScale = 1e-3;
 constexpr double kMostSlope = 0.95;
 
@@ -61,7 +61,7 @@ class ParameterList {
   void add_of_joint(FitGroup group, std::size_t i) {
     const Joint& joint = robot_.joints[i];
     const bool turns = joint.kind == JointKind::revolute;
-    const std::string effort = turns ? "N m" : "N";
+    const std::string effort = get_effort_unit(joint.kind);
     const std::string position = turns ? "rad" : "m";
     const auto add_one = [&](Kind kind, const char* name, const std::string& unit, int part = 0) {
       add(kind, i, part, fmt::format("{}.{}", joint.name, name), unit);
@@ -237,6 +237,15 @@ double get_parameter(const RobotModel& robot, const PlantParameter& parameter) {
       return calc_inertia_parameters(robot.links[parameter.joint].inertial)[parameter.part];
   }
   return 0;
+}
+
+std::vector<double> get_parameters(const RobotModel& robot,
+                                   std::span<const PlantParameter> parameters) {
+  std::vector<double> values;
+  for (const PlantParameter& parameter : parameters) {
+    values.push_back(get_parameter(robot, parameter));
+  }
+  return values;
 }
 
 void set_payload(RobotModel& robot, const Inertial& payload) {

@@ -79,6 +79,8 @@ std::vector<PlantParameter> find_parameters(const RobotModel& robot,
 
 // Returns the robot's own value. It is 0 for a delay and an encoder offset.
 double get_parameter(const RobotModel& robot, const PlantParameter& parameter);
+std::vector<double> get_parameters(const RobotModel& robot,
+                                   std::span<const PlantParameter> parameters);
 // Gives the robot the values. One that is out of its range (joint_plant.hpp) is moved to the end of
 // the range. The values of delays and encoder offsets are not used.
 void set_parameters(RobotModel& robot, std::span<const PlantParameter> parameters,

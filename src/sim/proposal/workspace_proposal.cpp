@@ -403,7 +403,7 @@ void refuse_to_hold(const RobotModel& robot, const RestingArm::Hardest& hardest,
                   "masses in the robot's file, state springs and "
                   "counterweights (robot.plant), carry less, or set another workspace",
                   hardest.joint + 1, sanitize(joint.name), hardest.effort,
-                  joint.kind == JointKind::revolute ? "N m" : "N", where, joint.effort_limit));
+                  get_effort_unit(joint.kind), where, joint.effort_limit));
 }
 
 void coarsen(TrackingTask& task) {

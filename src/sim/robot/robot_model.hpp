@@ -58,6 +58,9 @@ struct Link {
 // URDF is revolute with infinite limits. A prismatic joint moves along its axis; its position is a
 // distance in m.
 enum class JointKind { revolute, prismatic };
+inline const char* get_effort_unit(JointKind kind) {
+  return kind == JointKind::revolute ? "N m" : "N";
+}
 
 struct Joint {
   std::string name;

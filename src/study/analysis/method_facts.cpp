@@ -15,10 +15,7 @@ namespace {
 // Evaluates the start of a cell on its first training cases and returns the number of residuals.
 std::size_t count_residuals_on(const RunPlan& run, std::size_t cases) {
   const Problem& problem = *run.problem.problem;
-  std::vector<double> start;
-  for (const DecisionVariable& variable : problem.description().variables) {
-    start.push_back(variable.start);
-  }
+  const std::vector<double> start = list_starts(problem.description().variables);
   CaseBlock block{.role = CaseRole::training, .set = run.problem.sets.training, .numbers = {}};
   block.numbers.resize(cases);
   std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});

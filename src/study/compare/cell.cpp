@@ -19,14 +19,6 @@
 namespace armwright {
 namespace {
 
-std::vector<double> get_start(const ProblemDescription& problem) {
-  std::vector<double> start;
-  for (const DecisionVariable& variable : problem.variables) {
-    start.push_back(variable.start);
-  }
-  return start;
-}
-
 bool needs_choices(const StudyPlan& plan) {
   return plan.judge_along || !plan.targets.empty();
 }
@@ -76,7 +68,7 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
   const auto find_design = [&](const Incumbent& incumbent) {
     return journal.training.find(incumbent.evaluation).value().x;
   };
-  std::vector<std::vector<double>> designs = {get_start(problem)};
+  std::vector<std::vector<double>> designs = {list_starts(problem.variables)};
   for (const std::int64_t budget : checkpoints) {
     if (const Incumbent* incumbent = find_incumbent(budget)) {
       designs.push_back(find_design(*incumbent));

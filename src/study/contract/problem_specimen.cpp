@@ -72,11 +72,7 @@ std::vector<Question> Specimen::make_corners() const {
 }
 
 std::vector<double> Specimen::get_start() const {
-  std::vector<double> start;
-  for (const DecisionVariable& variable : description().variables) {
-    start.push_back(variable.start);
-  }
-  return start;
+  return list_starts(description().variables);
 }
 
 std::vector<CaseOutcome> Specimen::ask(std::span<const Question> questions, bool residuals) const {

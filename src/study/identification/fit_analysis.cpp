@@ -20,7 +20,8 @@ using Eigen::Index;
 constexpr double kConfidence = 0.95;
 constexpr int kWhitenessLags = 10;
 constexpr double kWindow = 8;
-// Of the normal matrix with columns of length 1: smaller eigenvalues are rounding.
+// The smallest eigenvalue that is not rounding, as a share of the largest, of the normal matrix with
+// columns of length 1.
 constexpr double kNoInformation = 1e-11;
 // The part in such a direction from which on a parameter counts as undetermined.
 constexpr double kPart = 0.05;
@@ -109,20 +110,12 @@ double calc_whiteness(const std::vector<double>& values, std::size_t stride) {
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(kWhitenessLags), q));
 }
 
-std::vector<double> list_own_values(const IdentificationProblem& problem) {
-  std::vector<double> own;
-  for (const PlantParameter& parameter : problem.parameters()) {
-    own.push_back(get_parameter(problem.robot(), parameter));
-  }
-  return own;
-}
-
 FitSet compare(const IdentificationProblem& problem, const std::vector<FittedMotion>& motions,
                std::span<const double> x) {
   FitSet set;
   const auto n = static_cast<Index>(problem.robot().joint_count());
   Eigen::VectorXd before = Eigen::VectorXd::Zero(n), after = before;
-  const std::vector<double> own = list_own_values(problem);
+  const std::vector<double>& own = problem.own_values();
   set.joints.resize(static_cast<std::size_t>(n));
   Eigen::RowVectorXd sums = Eigen::RowVectorXd::Zero(n), squares = sums;
   double samples = 0;
@@ -152,7 +145,7 @@ FitSet compare(const IdentificationProblem& problem, const std::vector<FittedMot
     const Joint& own_joint = problem.robot().joints[static_cast<std::size_t>(i)];
     JointFit& joint = set.joints[static_cast<std::size_t>(i)];
     joint.joint = own_joint.name;
-    joint.unit = own_joint.kind == JointKind::revolute ? "N m" : "N";
+    joint.unit = get_effort_unit(own_joint.kind);
     joint.deviation = std::sqrt(squares[i] / samples - sums[i] * sums[i] / samples / samples);
     joint.before = std::sqrt(before[i] / count);
     joint.after = std::sqrt(after[i] / count);
@@ -164,7 +157,7 @@ FitSet compare(const IdentificationProblem& problem, const std::vector<FittedMot
 
 // The normal matrix J^T J of all fitted motions, and what the channels make of it.
 struct Information {
-  Eigen::MatrixXd normal, spread;  // J^T J, and the sum of t_i s_i^2 J_i^T J_i
+  Eigen::MatrixXd normal, spread;  // J^T J, and the sum of s_i^2 J_i^T R_i J_i
   double independent = 0;          // samples
 };
 
@@ -228,7 +221,7 @@ FitAnalysis analyse_fit(const IdentificationProblem& problem, std::span<const do
   const auto& variables = problem.description().variables;
   const Information information = gather(problem, x);
   const auto p = static_cast<Index>(x.size());
-  const std::vector<double> own = list_own_values(problem);
+  const std::vector<double>& own = problem.own_values();
   for (std::size_t i = 0; i < x.size(); ++i) {
     const DecisionVariable& variable = variables[i];
     const double near = kAtBound * (variable.upper - variable.lower);
@@ -283,8 +276,8 @@ FitAnalysis analyse_fit(const IdentificationProblem& problem, std::span<const do
     }
   }
   analysis.fitted = compare(problem, problem.fitted(), x);
-  if (problem.has_held_back()) {
-    analysis.judged = compare(problem, problem.judged(), x);
+  if (!problem.held_back().empty()) {
+    analysis.judged = compare(problem, problem.held_back(), x);
   }
   return analysis;
 }

@@ -29,7 +29,7 @@ namespace armwright {
 struct FittedParameter {
   std::string name, unit;
   double before = 0;  // the robot's own value
-  double start = 0;   // that of the linear least squares
+  double start = 0;   // where the optimizer began
   double value = 0;
   double standard_error = 0;
   double lower = 0, upper = 0;  // of the 95 % interval

@@ -92,17 +92,11 @@ std::string to_json(const IdentificationProblem& problem, std::span<const double
   for (const FitAnalysis::Correlation& pair : analysis.correlations) {
     correlations.push_back({{"first", pair.first}, {"second", pair.second}, {"value", pair.value}});
   }
-  std::vector<double> own;
-  for (const FittedParameter& parameter : analysis.parameters) {
-    own.push_back(parameter.before);
-  }
   json motions = json::array();
-  for (const FittedMotion& motion : problem.fitted()) {
-    motions.push_back(write_motion(motion, own, x));
-  }
-  for (const FittedMotion& motion :
-       problem.has_held_back() ? problem.judged() : std::vector<FittedMotion>()) {
-    motions.push_back(write_motion(motion, own, x));
+  for (const auto* set : {&problem.fitted(), &problem.held_back()}) {
+    for (const FittedMotion& motion : *set) {
+      motions.push_back(write_motion(motion, problem.own_values(), x));
+    }
   }
   json all = {{"robot", problem.robot().name},
               {"doubts", doubts},
@@ -112,7 +106,7 @@ std::string to_json(const IdentificationProblem& problem, std::span<const double
               {"condition", analysis.condition},
               {"fitted", write_set(analysis.fitted)},
               {"motions", motions}};
-  if (problem.has_held_back()) {
+  if (!problem.held_back().empty()) {
     all["held_back"] = write_set(analysis.judged);
   }
   return all.dump(1, ' ', false, json::error_handler_t::replace) + "\n";

@@ -16,10 +16,7 @@ double measure_case_s(const StudyPlan& plan, const StudyProblem& problem, CaseRo
   }
   // A case of a user's program may take long.
   const std::size_t cases = is_program ? 1 : 32;
-  std::vector<double> x;
-  for (const DecisionVariable& variable : problem.loaded.problem->description().variables) {
-    x.push_back(variable.start);
-  }
+  const std::vector<double> x = list_starts(problem.loaded.problem->description().variables);
   CaseBlock block{role, set, std::vector<std::uint64_t>(cases)};
   std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
   const auto measure_s = [&] {

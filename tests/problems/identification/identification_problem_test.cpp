@@ -92,14 +92,6 @@ IdentificationConfig make_config(std::vector<FitGroup> groups, double noise = 0,
   return config;
 }
 
-std::vector<double> get_starts(const IdentificationProblem& problem) {
-  std::vector<double> x;
-  for (const DecisionVariable& variable : problem.description().variables) {
-    x.push_back(variable.start);
-  }
-  return x;
-}
-
 double get_truth(const RobotModel& truth, const PlantParameter& parameter) {
   if (parameter.kind == PlantParameter::Kind::encoder_offset) {
     return 0.001;
@@ -113,7 +105,7 @@ TEST(IdentificationProblem, HasTheDerivativesOfItsResiduals) {
                    FitGroup::stiffness, FitGroup::delay},
                   0.01);
   const IdentificationProblem problem(config);
-  std::vector<double> x = get_starts(problem);
+  std::vector<double> x = list_starts(problem.description().variables);
   x.back() = 0.004;  // the delay
   const auto& motion = problem.fitted().front();
   const auto here = problem.calc_residuals(motion, x, true);
@@ -148,7 +140,7 @@ TEST(IdentificationProblem, StartsAtTheTruthIfTheLogIsExact) {
 
 TEST(IdentificationProblem, ItsObjectiveIsTheSumOfItsSquaredResiduals) {
   const IdentificationProblem problem(make_config({FitGroup::friction}, 0.02));
-  const std::vector<double> x = get_starts(problem);
+  const std::vector<double> x = list_starts(problem.description().variables);
   const Evaluation evaluation = problem.evaluate(x, {CaseRole::training, "train/1", {0}}, true);
   double sum = 0;
   for (const double residual : evaluation.residuals) {
@@ -163,7 +155,7 @@ TEST(IdentificationProblem, HeldBackLogsAreTheTestAndNotTheTraining) {
       make_config({FitGroup::friction, FitGroup::armature, FitGroup::payload}, 0.02);
   config.held_back = {{"other", record_sines(config.robot, 0, 1)}};  // an arm without friction
   const IdentificationProblem problem(config);
-  const std::vector<double> x = get_starts(problem);
+  const std::vector<double> x = list_starts(problem.description().variables);
   const double trained = problem.evaluate(x, {CaseRole::training, "train/1", {0}}).case_errors[0];
   const double judged = problem.evaluate(x, {CaseRole::test, "test/2", {0}}).case_errors[0];
   EXPECT_GT(judged, 2 * trained);
@@ -208,15 +200,12 @@ LoadedProblem load_kr300(const std::string& fitted, const std::string& held_back
 TEST(Kr300Recordings, TheDataSheetHasTheErrorsOfAnIndependentComputation) {
   const LoadedProblem loaded = load_kr300("A", "B");
   const IdentificationProblem& problem = *find_identification(*loaded.problem);
-  std::vector<double> own;
-  for (const PlantParameter& parameter : problem.parameters()) {
-    own.push_back(get_parameter(problem.robot(), parameter));
-  }
   const double expected[2][6] = {{2.388, 2.735, 4.010, 0.389, 0.673, 1.051},
                                  {1.936, 2.492, 3.578, 0.323, 0.583, 0.658}};
   const FittedMotion* motions[] = {&problem.fitted().front(), &problem.judged().front()};
   for (int set = 0; set < 2; ++set) {
-    const Eigen::VectorXd rms = problem.calc_residuals(*motions[set], own, false).rms;
+    const Eigen::VectorXd rms =
+        problem.calc_residuals(*motions[set], problem.own_values(), false).rms;
     for (Eigen::Index i = 0; i < 6; ++i) {
       const double ratio = problem.robot().joints[static_cast<std::size_t>(i)].plant.gear_ratio;
       EXPECT_NEAR(rms[i] / ratio, expected[set][i], 0.02 * expected[set][i])

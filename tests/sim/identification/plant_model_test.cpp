@@ -171,10 +171,7 @@ TEST_P(FitGroups, HaveTheDerivativesOfTheEfforts) {
                                         FitGroup::payload};
   const auto parameters = list_parameters(arm, groups, std::vector<bool>(arm.joint_count(), true));
   const PlantModel model(arm, parameters, kGravity_m_per_s2, draw_motion(arm, 6));
-  std::vector<double> x;
-  for (const PlantParameter& parameter : parameters) {
-    x.push_back(get_parameter(arm, parameter));
-  }
+  const std::vector<double> x = get_parameters(arm, parameters);
   const PlantModel::Efforts here = model.calc(x, true);
   for (std::size_t p = 0; p < x.size(); ++p) {
     const double step = 1e-5 * std::max(1.0, std::abs(x[p]));
@@ -201,10 +198,7 @@ TEST(FitGroups, InertialHasTheDerivativesOfTheEfforts) {
   const FitGroup groups[] = {FitGroup::inertial};
   const auto parameters = list_parameters(arm, groups);
   const PlantModel model(arm, parameters, kGravity_m_per_s2, draw_motion(arm, 6));
-  std::vector<double> x;
-  for (const PlantParameter& parameter : parameters) {
-    x.push_back(get_parameter(arm, parameter));
-  }
+  const std::vector<double> x = get_parameters(arm, parameters);
   const PlantModel::Efforts here = model.calc(x, true);
   for (std::size_t p = 0; p < x.size(); ++p) {
     std::vector<double> up = x, down = x;
@@ -225,10 +219,7 @@ TEST(PlantParameters, OwnValuesLeaveTheRobotAsItIs) {
     groups.push_back(static_cast<FitGroup>(i));
   }
   const auto parameters = list_parameters(arm, groups, std::vector<bool>(arm.joint_count(), true));
-  std::vector<double> x;
-  for (const PlantParameter& parameter : parameters) {
-    x.push_back(get_parameter(arm, parameter));
-  }
+  const std::vector<double> x = get_parameters(arm, parameters);
   RobotModel again = arm;
   set_parameters(again, parameters, x);
   for (std::size_t i = 0; i < arm.joint_count(); ++i) {
