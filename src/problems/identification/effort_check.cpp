@@ -54,13 +54,17 @@ std::optional<std::pair<Index, Index>> find_swapped(const IdentificationProblem&
   for (Index i = 0; i < n; ++i) {
     for (Index k = i + 1; k < n; ++k) {
       Eigen::MatrixXd efforts = motion.efforts;
-      efforts.col(i).swap(efforts.col(k));
+      const double ratio = motion.effort_factors[i] / motion.effort_factors[k];
+      efforts.col(i) = ratio * motion.efforts.col(k);
+      efforts.col(k) = motion.efforts.col(i) / ratio;
       double other = 0;
       if (are_positions_swapped) {
         JointMotion swapped = motion.model.motion();
-        for (Eigen::MatrixXd* columns :
-             {&swapped.positions, &swapped.rates, &swapped.accelerations}) {
-          columns->col(i).swap(columns->col(k));
+        for (Eigen::MatrixXd* columns : {&swapped.positions, &swapped.rates, &swapped.accelerations,
+                                         &swapped.motor_rates, &swapped.motor_accelerations}) {
+          if (columns->size() > 0) {
+            columns->col(i).swap(columns->col(k));
+          }
         }
         const PlantModel model(problem.robot(), {}, problem.gravity_m_per_s2(), swapped);
         other = calc_error(calc_own_efforts(model, n, {}), efforts);

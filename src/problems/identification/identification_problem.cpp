@@ -64,17 +64,27 @@ double find_spread(const Eigen::VectorXd& values) {
 FittedMotion make_motion(const IdentificationConfig::Log& log, const IdentificationConfig& config,
                          const std::vector<PlantParameter>& parameters) {
   const LogSamples& samples = log.samples;
+  JointMotion motion = {samples.positions, samples.rates, samples.accelerations};
   Eigen::MatrixXd deflections;
   if (samples.link_positions.size() > 0) {
     deflections = samples.positions - samples.link_positions;
+    motion.motor_rates = samples.rates;
+    motion.motor_accelerations = samples.accelerations;
+    for (Index i = 0; i < deflections.cols(); ++i) {
+      if (samples.link_positions.col(i).allFinite()) {
+        motion.positions.col(i) = samples.link_positions.col(i);
+        motion.rates.col(i) = samples.link_rates.col(i);
+        motion.accelerations.col(i) = samples.link_accelerations.col(i);
+      }
+    }
   }
   return {.name = log.name,
           .period_s = samples.period_s,
           .cutoff_hz = config.cutoff_hz,
-          .model = PlantModel(config.robot, parameters, config.gravity_m_per_s2,
-                              {samples.positions, samples.rates, samples.accelerations},
+          .model = PlantModel(config.robot, parameters, config.gravity_m_per_s2, motion,
                               make_smoothing(samples.period_s, config.cutoff_hz)),
           .efforts = samples.efforts,
+          .effort_factors = samples.effort_factors,
           .deflections = std::move(deflections)};
 }
 

@@ -53,8 +53,9 @@ struct FittedMotion {
   double period_s = 0;
   double cutoff_hz = 0;
   PlantModel model;
-  Eigen::MatrixXd efforts;      // as recorded; one row per sample, one column per joint
-  Eigen::MatrixXd deflections;  // likewise; NaN where nothing was recorded; may be empty
+  Eigen::MatrixXd efforts;         // as recorded; one row per sample, one column per joint
+  Eigen::VectorXd effort_factors;  // as MotionLog::effort_factors
+  Eigen::MatrixXd deflections;     // likewise; NaN where nothing was recorded; may be empty
 };
 
 class IdentificationProblem final : public Problem {

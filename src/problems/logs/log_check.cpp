@@ -133,12 +133,16 @@ MotionLog make_log(Recording& recording, const RobotModel& robot) {
   log.notes = recording.notes;
   const auto rows = static_cast<Eigen::Index>(log.times_s.size());
   const auto joints = static_cast<Eigen::Index>(robot.joint_count());
+  log.effort_factors.setOnes(joints);
   for (RecordedColumn& column : recording.columns) {
     Eigen::MatrixXd* const goals[] = {&log.positions, &log.velocities, &log.efforts,
                                       &log.link_positions, &log.references};
     Eigen::MatrixXd& goal = *goals[static_cast<std::size_t>(column.quantity)];
     if (goal.size() == 0) {
       goal.setConstant(rows, joints, std::numeric_limits<double>::quiet_NaN());
+    }
+    if (column.quantity == LogQuantity::effort) {
+      log.effort_factors[column.joint] = column.factor;
     }
     goal.col(column.joint) = Eigen::Map<const Eigen::VectorXd>(column.values.data(), rows);
     column.values = {};  // their names are still needed

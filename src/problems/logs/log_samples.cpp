@@ -176,26 +176,36 @@ LogSamples condition(const MotionLog& log, const Conditioning& conditioning) {
   const auto keep = [&](const Eigen::VectorXd& values) {
     return values(Eigen::seqN(first, kept, stride)).eval();
   };
+  samples.effort_factors = log.effort_factors;
   const Eigen::Index joints = log.positions.cols();
   for (Eigen::MatrixXd* goal :
        {&samples.positions, &samples.rates, &samples.accelerations, &samples.efforts}) {
     goal->resize(kept, joints);
   }
   if (log.link_positions.size() > 0) {
-    samples.link_positions.setConstant(kept, joints, std::numeric_limits<double>::quiet_NaN());
+    for (Eigen::MatrixXd* goal :
+         {&samples.link_positions, &samples.link_rates, &samples.link_accelerations}) {
+      goal->setConstant(kept, joints, std::numeric_limits<double>::quiet_NaN());
+    }
   }
-  for (Eigen::Index j = 0; j < joints; ++j) {
-    const Eigen::VectorXd position = filtered(log.positions, j);
+  const auto differentiate = [&](const Eigen::MatrixXd& recorded, Eigen::Index j,
+                                 Eigen::MatrixXd& positions, Eigen::MatrixXd& rates,
+                                 Eigen::MatrixXd& accelerations) {
+    const Eigen::VectorXd position = filtered(recorded, j);
     for (Eigen::Index i = 0; i < kept; ++i) {
       const Eigen::Index at = first + i * stride;
       const double before = position[at - 1], here = position[at], behind = position[at + 1];
-      samples.positions(i, j) = here;
-      samples.rates(i, j) = (behind - before) / (2 * even.period_s);
-      samples.accelerations(i, j) = (behind - 2 * here + before) / (even.period_s * even.period_s);
+      positions(i, j) = here;
+      rates(i, j) = (behind - before) / (2 * even.period_s);
+      accelerations(i, j) = (behind - 2 * here + before) / (even.period_s * even.period_s);
     }
+  };
+  for (Eigen::Index j = 0; j < joints; ++j) {
+    differentiate(log.positions, j, samples.positions, samples.rates, samples.accelerations);
     samples.efforts.col(j) = keep(filtered(log.efforts, j));
     if (log.link_positions.size() > 0 && std::isfinite(log.link_positions(0, j))) {
-      samples.link_positions.col(j) = keep(filtered(log.link_positions, j));
+      differentiate(log.link_positions, j, samples.link_positions, samples.link_rates,
+                    samples.link_accelerations);
     }
   }
   return samples;

@@ -25,7 +25,9 @@ struct LogSamples {
   double period_s = 0;
   Eigen::VectorXd times_s;  // of the log
   Eigen::MatrixXd positions, rates, accelerations, efforts;
-  Eigen::MatrixXd link_positions;  // as MotionLog::link_positions: empty, or NaN in some columns
+  Eigen::VectorXd effort_factors;  // as MotionLog::effort_factors
+  // As MotionLog::link_positions: empty, or NaN in some columns.
+  Eigen::MatrixXd link_positions, link_rates, link_accelerations;
   std::vector<std::string> notes;  // what was done, one line each
 };
 

@@ -25,6 +25,8 @@ struct MotionLog {
   std::vector<double> times_s;  // strictly increasing
   Eigen::MatrixXd positions;    // rad or m; of the motors, if the log also has link positions
   Eigen::MatrixXd efforts;      // N m or N
+  // Per joint, its efforts divided by the numbers in the file: gear ratio, unit and sign.
+  Eigen::VectorXd effort_factors;
   // Empty if no joint has them. A column is NaN if only that joint lacks it.
   Eigen::MatrixXd velocities;      // rad/s or m/s
   Eigen::MatrixXd link_positions;  // rad or m

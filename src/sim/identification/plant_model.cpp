@@ -171,6 +171,10 @@ void PlantModel::add_balance(const RobotModel& changed, bool jacobian, Efforts& 
 
 void PlantModel::add_motors(const RobotModel& changed, bool jacobian, Efforts& efforts) const {
   const auto n = static_cast<Index>(robot_.joint_count());
+  const bool has_motors = motion_.motor_rates.size() > 0;
+  const Eigen::MatrixXd& all_rates = has_motors ? motion_.motor_rates : motion_.rates;
+  const Eigen::MatrixXd& all_accelerations =
+      has_motors ? motion_.motor_accelerations : motion_.accelerations;
   efforts.motor = efforts.link;
   if (jacobian) {
     efforts.motor_jacobian = efforts.link_jacobian;
@@ -178,8 +182,7 @@ void PlantModel::add_motors(const RobotModel& changed, bool jacobian, Efforts& e
   for (Index i = 0; i < n; ++i) {
     const auto joint = static_cast<std::size_t>(i);
     const JointPlant& plant = changed.joints[joint].plant;
-    const Eigen::VectorXd rates = motion_.rates.col(i),
-                          accelerations = motion_.accelerations.col(i);
+    const Eigen::VectorXd rates = all_rates.col(i), accelerations = all_accelerations.col(i);
     const DryFriction friction = calc_dry_friction(plant, rates, accelerations, smoothing_);
     const auto rows = Eigen::seqN(i, rates.size(), n);
     efforts.motor(rows) += plant.armature * accelerations + plant.viscous * rates +

@@ -1,8 +1,9 @@
 // The efforts that a recorded motion needs, as a function of the robot's parameters
 // (plant_parameters.hpp): inverse dynamics and its derivatives. With the laws of
-// sim/robot/joint_plant.hpp, elastic joints counting as rigid,
+// sim/robot/joint_plant.hpp,
 //   link   e = M(q) a + b(q, v) - s(q)
-//   motor  u = e + A a + f(v).
+//   motor  u = e + A a_m + f(v_m);
+// v_m = v and a_m = a unless the motor's side of the gear was recorded as well.
 // Y(q, v, a) (link_regressor.hpp) is computed once per sample, so an evaluation costs one product
 // of matrices.
 #pragma once
@@ -18,7 +19,8 @@ namespace armwright {
 
 // Matrices have one row per sample and one column per joint (rad or m, and their derivatives).
 struct JointMotion {
-  Eigen::MatrixXd positions, rates, accelerations;
+  Eigen::MatrixXd positions, rates, accelerations;             // of the links
+  Eigen::MatrixXd motor_rates = {}, motor_accelerations = {};  // empty: those of the links
 };
 
 // The filter that recorded efforts have passed. `apply` returns a signal as the filter leaves it, with

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -43,6 +44,16 @@ std::string write_list(const Eigen::MatrixXd& rows, Index row) {
     text += fmt::format("{}{:.6f}", i == 0 ? "" : ", ", rows(row, i));
   }
   return "[" + text + "]";
+}
+
+// Returns the rates of a smooth signal: central differences, and one-sided ones at its ends.
+Eigen::VectorXd differentiate(const Eigen::VectorXd& values, const Eigen::VectorXd& times_s) {
+  Eigen::VectorXd rates(values.size());
+  for (Index k = 0; k < values.size(); ++k) {
+    const Index from = std::max<Index>(k - 1, 0), to = std::min(k + 1, values.size() - 1);
+    rates[k] = (values[to] - values[from]) / (times_s[to] - times_s[from]);
+  }
+  return rates;
 }
 
 }  // namespace
@@ -99,15 +110,17 @@ std::string write_simulated_log(const RobotModel& robot, double gravity_m_per_s2
                                 const AssessedMotion& motion, std::uint64_t noise_seed) {
   const Index samples = motion.times_s.size();
   const auto n = static_cast<Index>(robot.joint_count());
-  const PlantModel::Efforts model =
-      PlantModel(robot, {}, gravity_m_per_s2, motion.motion).calc({}, false);
   const auto to_rows = [&](const Eigen::VectorXd& efforts) {
     return Eigen::MatrixXd(
         Eigen::Map<const Eigen::MatrixXd>(efforts.data(), n, samples).transpose());
   };
-  Eigen::MatrixXd efforts = to_rows(model.motor), positions = motion.motion.positions;
-  const Eigen::MatrixXd links = to_rows(model.link);
-  const Eigen::VectorXd noise = calc_effort_noise(efforts);
+  const PlantModel::Efforts links =
+      PlantModel(robot, {}, gravity_m_per_s2, motion.motion).calc({}, false);
+  JointMotion moved = motion.motion;
+  moved.motor_rates = moved.rates;
+  moved.motor_accelerations = moved.accelerations;
+  Eigen::MatrixXd positions = moved.positions;  // of the motors
+  Eigen::MatrixXd efforts = to_rows(links.motor);
   std::vector<Index> elastic;
   std::string text = "time_s" + write_heads(robot, "position", "rad", "m") +
                      write_heads(robot, "effort", "n_m", "n");
@@ -115,11 +128,19 @@ std::string write_simulated_log(const RobotModel& robot, double gravity_m_per_s2
     const Joint& joint = robot.joints[static_cast<std::size_t>(i)];
     if (joint.plant.is_elastic()) {
       elastic.push_back(i);
-      positions.col(i) += links.col(i) / joint.plant.stiffness;
+      const Eigen::VectorXd deflections = to_rows(links.link).col(i) / joint.plant.stiffness;
+      const Eigen::VectorXd rates = differentiate(deflections, motion.times_s);
+      positions.col(i) += deflections;
+      moved.motor_rates.col(i) += rates;
+      moved.motor_accelerations.col(i) += differentiate(rates, motion.times_s);
       text += fmt::format(",link_position_{}_{}", i + 1, get_unit(joint, "rad", "m"));
     }
   }
   text += "\n";
+  if (!elastic.empty()) {  // rotors and friction are on the motors' side of the gears
+    efforts = to_rows(PlantModel(robot, {}, gravity_m_per_s2, moved).calc({}, false).motor);
+  }
+  const Eigen::VectorXd noise = calc_effort_noise(efforts);
   RandomStream random("excitation/noise", noise_seed);
   for (Index k = 0; k < samples; ++k) {
     for (Index i = 0; i < n; ++i) {

@@ -47,20 +47,35 @@ LogSamples record_sines(const RobotModel& truth, double noise, std::uint64_t see
       log.accelerations(k, i) = a;
     }
   }
-  const PlantModel model(truth, {}, kNormalGravity_m_per_s2,
-                         {log.positions, log.rates, log.accelerations});
-  const PlantModel::Efforts efforts = model.calc({}, false);
-  log.efforts = efforts.motor.reshaped<Eigen::RowMajor>(kSamples, n);
   log.link_positions = log.positions;
+  log.link_rates = log.rates;
+  log.link_accelerations = log.accelerations;
+  JointMotion motion = {log.positions, log.rates, log.accelerations};
+  const Eigen::MatrixXd links = PlantModel(truth, {}, kNormalGravity_m_per_s2, motion)
+                                    .calc({}, false)
+                                    .link.reshaped<Eigen::RowMajor>(kSamples, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double stiffness = truth.joints[static_cast<std::size_t>(i)].plant.stiffness;
+    const Eigen::VectorXd twist =
+        stiffness > 0 ? Eigen::VectorXd(links.col(i) / stiffness) : Eigen::VectorXd::Zero(kSamples);
+    log.positions.col(i) += twist + Eigen::VectorXd::Constant(kSamples, stiffness > 0 ? 0.001 : 0);
+    for (Eigen::Index k = 1; k + 1 < kSamples; ++k) {
+      log.rates(k, i) += (twist[k + 1] - twist[k - 1]) / (2 * log.period_s);
+      log.accelerations(k, i) +=
+          (twist[k + 1] - 2 * twist[k] + twist[k - 1]) / (log.period_s * log.period_s);
+    }
+  }
+  motion.motor_rates = log.rates;
+  motion.motor_accelerations = log.accelerations;
+  log.efforts = PlantModel(truth, {}, kNormalGravity_m_per_s2, motion)
+                    .calc({}, false)
+                    .motor.reshaped<Eigen::RowMajor>(kSamples, n);
+  log.effort_factors.setOnes(n);
   RandomStream random("test/log noise", seed);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double most = log.efforts.col(i).cwiseAbs().maxCoeff();
-    const double stiffness = truth.joints[static_cast<std::size_t>(i)].plant.stiffness;
     for (Eigen::Index k = 0; k < kSamples; ++k) {
       log.efforts(k, i) += noise * most * random.normal();
-      if (stiffness > 0) {
-        log.link_positions(k, i) -= efforts.link[k * n + i] / stiffness + 0.001;
-      }
     }
   }
   return log;
@@ -175,10 +190,18 @@ TEST(EffortFaults, NameAWrongSignAndSwappedEfforts) {
   wrong.fitted[0].samples.efforts.col(1).swap(wrong.fitted[0].samples.efforts.col(3));
   EXPECT_THAT(find_effort_faults(IdentificationProblem(wrong)),
               ElementsAre(HasSubstr("the efforts of joints 'joint_2' and 'joint_4' are swapped")));
+  // Torques of motors, exchanged before their gears made efforts of them.
+  LogSamples& samples = wrong.fitted[0].samples;
+  samples.effort_factors[1] = 50;
+  samples.effort_factors[3] = 200;
+  samples.efforts.col(1) *= 50.0 / 200;
+  samples.efforts.col(3) *= 200.0 / 50;
+  EXPECT_THAT(find_effort_faults(IdentificationProblem(wrong)),
+              ElementsAre(HasSubstr("the efforts of joints 'joint_2' and 'joint_4' are swapped")));
   wrong = config;
   for (Eigen::MatrixXd* rows :
-       {&wrong.fitted[0].samples.positions, &wrong.fitted[0].samples.rates,
-        &wrong.fitted[0].samples.accelerations, &wrong.fitted[0].samples.efforts}) {
+       {&samples.positions, &samples.rates, &samples.accelerations, &samples.link_positions,
+        &samples.link_rates, &samples.link_accelerations, &samples.efforts}) {
     rows->col(1).swap(rows->col(3));
   }
   EXPECT_THAT(find_effort_faults(IdentificationProblem(wrong)),
