@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <stdexcept>
 
 #include "base/random.hpp"
+#include "base/text.hpp"
 
 namespace armwright {
 namespace {
@@ -143,6 +145,47 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
     plant.variation = std::move(variation);
   }
   return plant;
+}
+
+std::string describe_plants(const Perturbation& p, CaseRole role) {
+  if (!p.applies_to(role)) {
+    return "";
+  }
+  std::vector<std::string> parts;
+  const auto add = [&](const char* what, double size, double factor, const char* unit) {
+    if (size > 0) {
+      parts.push_back(fmt::format("{} {:.3g} {}", what, factor * size, unit));
+    }
+  };
+  if (p.fitted != Perturbation::Fitted::none) {
+    std::vector<std::string> logs;
+    for (const std::string& log : p.fitted_plant->logs) {
+      const std::filesystem::path file = log.substr(0, log.rfind(' '));  // without its hash
+      logs.push_back(sanitize(file.filename().string()));
+    }
+    parts.push_back(fmt::format(
+        "{} the fit of {} ({} parameters)",
+        p.fitted == Perturbation::Fitted::draws ? "drawn from" : "corners of",
+        logs.empty() ? "an unnamed log" : join(logs, ", "), p.fitted_plant->parameters.size()));
+  }
+  add("masses +-", p.mass_relative, 100, "%");
+  if (p.load_kg) {
+    parts.push_back(fmt::format("load {:.4g} to {:.4g} kg", p.load_kg->first, p.load_kg->second));
+  }
+  add("friction +-", p.friction_relative, 100, "%");
+  add("armatures +-", p.armature_relative, 100, "%");
+  add("stiffness +-", p.stiffness_relative, 100, "%");
+  if (has_any(p.viscous_friction_n_m_s_per_rad) || has_any(p.coulomb_friction_n_m)) {
+    parts.emplace_back("friction added at the joints");
+  }
+  add("viscous friction up to", p.viscous_friction_share, 100, "% of the effort");
+  add("Coulomb friction up to", p.coulomb_friction_share, 100, "% of the effort");
+  add("encoder steps of", p.quantisation_rad, 1, "rad");
+  add("delay up to", p.delay_s, 1000, "ms");
+  add("torque ripple up to", p.torque_ripple_relative, 100, "%");
+  add("effort limits reduced, sigma", p.effort_limit_sigma, 100, "%");
+  add("gains off, sigma", p.gain_sigma, 100, "%");
+  return join(parts, ", ");
 }
 
 RobotModel make_fastest_arm(RobotModel nominal, const Perturbation& p) {

@@ -117,6 +117,10 @@ struct Plant {
 Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double substep_s,
                  std::string_view case_set, std::uint64_t number);
 
+// Returns in words how the plants of that role's cases differ from each other, "drawn from the fit of
+// trajectory-A.csv (38 parameters), masses +-10 %". Empty if all of them have the nominal plant.
+std::string describe_plants(const Perturbation& perturbation, CaseRole role);
+
 // Returns the arm of the perturbation's plants whose springs move fastest: each joint has the
 // largest stiffness and damping and the smallest armature, each link the smallest mass.
 RobotModel make_fastest_arm(RobotModel nominal, const Perturbation& perturbation);

@@ -81,6 +81,7 @@ std::string describe_target(const TrackingConfig& config, const TrackingTask& ta
 std::string make_task_facts(const FinishedArm& arm) {
   const TrackingConfig& config = arm.config();
   const TrackingTask task = arm.run.tracking()->make_task(arm.design);
+  const std::string plants = describe_plants(config.perturbation, CaseRole::test);
   const SheetFacts facts = {
       {"Problem", sanitize(arm.result().problem)},
       {"Target", describe_target(config, task)},
@@ -88,6 +89,7 @@ std::string make_task_facts(const FinishedArm& arm) {
       {"Points", describe_points(config)},
       {"Workspace", describe_workspace(config)},
       {"Tool", tool_orientation_names()[static_cast<std::size_t>(task.tool.orientation)]},
+      {"Plants", plants.empty() ? "nominal in all cases" : "in each case other ones: " + plants},
       {"Controller",
        fmt::format("{}, every {:.4g} s", arm.design.controller, task.control_period_s)},
       {"Physics", config.engines.training_name == config.engines.judging_name

@@ -79,6 +79,9 @@ void add_setting(const RecordedRun& run, Facts& facts) {
                             ? engines.judging_name
                             : fmt::format("{} in training, {} in judging", engines.training_name,
                                           engines.judging_name));
+    const Perturbation& plants = tracking->config().perturbation;
+    facts.add("Plants in training", describe_plants(plants, CaseRole::training));
+    facts.add("Plants in judging", describe_plants(plants, CaseRole::test));
   }
 }
 

@@ -392,6 +392,17 @@ TEST(PerturbationTable, ShippedPresetsSuitEveryRobot) {
 }
 
 // A run's inputs have hashes. With other bytes, runs of version 1.0 could not be resumed.
+TEST(PerturbationWords, NameWhatDiffersInTheCasesOfARole) {
+  Perturbation p = make_everything();
+  p.where = Perturbation::Where::judging;
+  EXPECT_EQ(describe_plants(p, CaseRole::training), "");
+  EXPECT_EQ(describe_plants(p, CaseRole::test),
+            "masses +- 10 %, load 5 to 40 kg, friction added at the joints, encoder steps of "
+            "0.0001 rad, delay up to 10 ms, torque ripple up to 2 %, effort limits reduced, sigma "
+            "20 %, gains off, sigma 10 %");
+  EXPECT_EQ(describe_plants(Perturbation{}, CaseRole::test), "");
+}
+
 TEST(PerturbationTable, PresetsOfTheThesisKeepTheBytesOfVersion1) {
   const std::pair<std::string, std::string> hashes[] = {
       {"all", "517872b4859e6315bad39cc3afb569237f191b16ea001a7dbd1dca6bcc6a5c98"},

@@ -21,6 +21,7 @@ namespace {
 using nlohmann::json;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 
 constexpr double kFlange_kg = 217.78;  // 200 kg and the flange's 17.78
 
@@ -136,6 +137,8 @@ TEST_F(Identifications, MakeProblemsWhoseCasesHaveOtherPlants) {
               two = draw_plant(p, 6, 0.001, "train/1", 1);
   EXPECT_NE(one.fitted_values, two.fitted_values);
   EXPECT_EQ(one.fitted_values, draw_plant(p, 6, 0.001, "train/1", 0).fitted_values);
+  EXPECT_THAT(describe_plants(p, CaseRole::test),
+              MatchesRegex("drawn from the fit of trajectory-A.csv \\([0-9]+ parameters\\)"));
   const RobotModel& nominal = drawn.tracking()->config().robot;
   EXPECT_NE(one.make_arm(nominal).links.back().inertial.mass_kg,
             nominal.links.back().inertial.mass_kg)
