@@ -235,8 +235,9 @@ void add_compare(CLI::App& app, Session& session) {
   command
       ->add_option("--schedule", options->schedule,
                    "Schedule of the training cases: fixed:K, or, if all optimizers have\n"
-                   "generations, fresh:K or coevolution:K, or own: fresh:1 for optimizers with\n"
-                   "generations, fixed:5 for the others (default: fixed, K of the problem)")
+                   "generations, fresh:K, coevolution:K or growing:K:FACTOR, or own: fresh:1 for\n"
+                   "optimizers with generations, fixed:5 for the others (default: fixed, K of\n"
+                   "the problem)")
       ->type_name("KIND:K");
   command
       ->add_option("--seed", options->seed,

@@ -41,8 +41,9 @@ list of the differences; --new begins another folder. The folder holds the winne
 
 Terms: a design is the gains and effort limits of all joints. A case is one path of the moving target. The budget
 counts simulated training cases (one design on one case is 1). The schedule chooses the training cases: fresh:K takes
-the next K cases of the training set for every generation, fixed:K always takes the first K, and coevolution:K breeds
-K cases that are hard for the designs. Racing spends fewer cases on bad designs (docs/racing.md): halving:4:2 gives all
+the next K cases of the training set for every generation, fixed:K always takes the first K, coevolution:K breeds K
+cases that are hard for the designs, and growing:K:FACTOR begins with the first K and takes FACTOR times as many
+whenever progress is within the noise between cases. Racing spends fewer cases on bad designs (docs/racing.md): halving:4:2 gives all
 designs of a generation 4 cases, the better half of the designs gets 8, and so on; abandonment:1:4 checks every 4 cases
 and abandons a design that is certain to be worse than 1 times the best. At the end, the best designs are judged on the
 validation set and the winner on the test set; the budget does not count these cases. The seed determines the
@@ -257,8 +258,9 @@ void add_optimize(CLI::App& app, Session& session) {
   options->add_to(*command);
   command
       ->add_option("--schedule", options->schedule,
-                   "Schedule of the training cases: fresh:K, fixed:K or coevolution:K (default:\n"
-                   "the problem's; fixed if the optimizer has no generations)")
+                   "Schedule of the training cases: fresh:K, fixed:K, coevolution:K or\n"
+                   "growing:K:FACTOR (default: the problem's; fixed if the optimizer has no\n"
+                   "generations)")
       ->type_name("KIND:K");
   command
       ->add_option("--racing", options->racing,

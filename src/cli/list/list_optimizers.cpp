@@ -45,9 +45,11 @@ std::string format_facts(const OptimizerRow& row, const Style& style, int width)
   const std::vector<std::string> required = list_requirements(row.requirements);
   facts.add_row({"Problem", required.empty() ? "any" : "one with " + join(required, " and ")});
   facts.add_row(
-      {"Schedules", row.capabilities.generations
-                        ? "fresh:K (new training cases every generation), coevolution:K and fixed:K"
-                        : "fixed:K only"});
+      {"Schedules",
+       row.capabilities.generations
+           ? "fresh:K (new training cases every generation), growing:K:FACTOR, coevolution:K "
+             "and fixed:K"
+           : "fixed:K only"});
   facts.add_row({"Runs", describe_isolation(row)});
   if (!row.backend.empty()) {
     facts.add_row({"Library", row.backend});

@@ -31,7 +31,7 @@ double parse_duration_s(std::string_view flag, std::string_view text);
 // Reads "60s,4GiB", "60s" or "4GiB", the value of --read-limit. What the text leaves out keeps its
 // default. Throws Error{usage}.
 ReadLimit parse_read_limit(std::string_view text);
-// Reads "fresh:K", "fixed:K" or "coevolution:K", the value of --schedule. Throws Error{usage}.
+// Reads the value of --schedule (kScheduleForms). Throws Error{usage}.
 Schedule parse_schedule(std::string_view text);
 // Reads the value of --racing. Throws Error{usage}.
 Racing parse_racing(std::string_view text);

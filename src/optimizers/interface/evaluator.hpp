@@ -79,8 +79,11 @@ class Evaluator {
   virtual std::int64_t remaining() const = 0;
 
   // An optimizer with generations calls this before each generation, also before the first. In a
-  // run, the schedules `fresh` and `coevolution` change the training cases at this call.
+  // run, the schedules `fresh`, `coevolution` and `growing` change the training cases at this call.
   virtual void begin_generation() = 0;
+  // Returns how often the training cases have changed. Objectives and residuals from before a change
+  // cannot be compared with later ones.
+  virtual std::uint64_t case_changes() const { return 0; }
   // Recommends a point as a candidate for the winner, for example the mean of a distribution. The
   // run already knows the evaluated points. The call simulates nothing and costs no budget. It
   // counts also after the budget has ended, until minimize() returns or the optimizer's process has

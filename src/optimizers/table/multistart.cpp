@@ -47,6 +47,7 @@ class StartedElsewhere : public Evaluator {
   bool stopped() const override { return allowance_ == 0 || is_spent_ || evaluator_.stopped(); }
   std::int64_t remaining() const override { return std::min(allowance_, evaluator_.remaining()); }
   void begin_generation() override { evaluator_.begin_generation(); }
+  std::uint64_t case_changes() const override { return evaluator_.case_changes(); }
   void recommend(std::span<const double> x) override { evaluator_.recommend(x); }
 
   bool has_evaluated() const { return has_evaluated_; }

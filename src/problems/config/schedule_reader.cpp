@@ -7,12 +7,19 @@ namespace {
 const Setting<std::string> kScheduleKind{
     "kind", schedule_kind_names, "fixed",
     "training cases; fixed: always the first ones; fresh: new ones for every generation; "
-    "coevolution: cases bred against the designs"};
+    "coevolution: cases bred against the designs; growing: the first ones, and more of them "
+    "whenever "
+    "progress is within the noise between cases"};
 const Setting<int> kScheduleCases{
     "cases",
     {.lower = 1, .upper = kMostCases},
     Schedule{}.cases,
-    "training cases per evaluation; for coevolution at least 4, without default"};
+    "training cases per evaluation; for coevolution at least 4, without default; of growing the "
+    "first number"};
+const Setting<double> kScheduleFactor{"factor",
+                                      {.lower = 1, .upper = kLargestFactor, .lower_open = true},
+                                      Schedule{}.factor,
+                                      "for growing: on the number of training cases"};
 const Setting<int> kScheduleFixedCases{
     "fixed_cases",
     {.lower = 1, .upper = kMostCases},
@@ -46,7 +53,8 @@ const Setting<int> kRacingChunkCases{
 }  // namespace
 
 const SettingTable kScheduleSettings{
-    .key = "schedule", .settings = {&kScheduleKind, &kScheduleCases, &kScheduleFixedCases}};
+    .key = "schedule",
+    .settings = {&kScheduleKind, &kScheduleCases, &kScheduleFactor, &kScheduleFixedCases}};
 const SettingTable kRacingSettings{.key = "racing",
                                    .settings = {&kRacingKind, &kRacingFirstCases, &kRacingEta,
                                                 &kRacingMargin, &kRacingChunkCases}};
@@ -59,6 +67,9 @@ void read_schedule_table(const ConfigTable& table, LoadedProblem& loaded) {
     loaded.schedule.cases = table.get(bred);
   } else {
     loaded.schedule.cases = table.get(kScheduleCases);
+  }
+  if (loaded.schedule.kind == Schedule::Kind::growing) {
+    loaded.schedule.factor = table.get(kScheduleFactor);
   }
   loaded.fixed_cases = table.get(kScheduleFixedCases);
 }

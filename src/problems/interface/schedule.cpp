@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::array kScheduleKinds = {std::pair{"fixed", Schedule::Kind::fixed},
                                        std::pair{"fresh", Schedule::Kind::fresh},
-                                       std::pair{"coevolution", Schedule::Kind::coevolution}};
+                                       std::pair{"coevolution", Schedule::Kind::coevolution},
+                                       std::pair{"growing", Schedule::Kind::growing}};
 constexpr std::array kRacingKinds = {std::pair{"none", Racing::Kind::none},
                                      std::pair{"halving", Racing::Kind::halving},
                                      std::pair{"abandonment", Racing::Kind::abandonment}};
@@ -79,16 +80,26 @@ std::string get_training_set(const std::string& set, const Schedule& schedule) {
 
 std::optional<Schedule> read_schedule(std::string_view text) {
   const auto parts = split(text, ':');
-  if (parts.size() != 2) {
+  const auto kind = find_schedule_kind(parts[0]);
+  const auto cases = parts.size() < 2 ? std::nullopt : read_count(parts[1], 1, kMostCases);
+  if (!kind || !cases || parts.size() > (*kind == Schedule::Kind::growing ? 3U : 2U)) {
     return std::nullopt;
   }
-  const auto kind = find_schedule_kind(parts[0]);
-  const auto cases = read_count(parts[1], 1, kMostCases);
-  return kind && cases ? std::optional(Schedule{*kind, *cases}) : std::nullopt;
+  Schedule schedule = {*kind, *cases};
+  if (parts.size() == 3) {
+    const auto factor = parse_finite(parts[2]);
+    if (!factor || !(*factor > 1 && *factor <= kLargestFactor)) {
+      return std::nullopt;
+    }
+    schedule.factor = *factor;
+  }
+  return schedule;
 }
 
 std::string to_text(const Schedule& schedule) {
-  return fmt::format("{}:{}", to_string(schedule.kind), schedule.cases);
+  std::string text = fmt::format("{}:{}", to_string(schedule.kind), schedule.cases);
+  return schedule.kind == Schedule::Kind::growing ? text + ":" + format_exact(schedule.factor)
+                                                  : text;
 }
 
 std::optional<Racing> read_racing(std::string_view text) {

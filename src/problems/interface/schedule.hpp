@@ -19,14 +19,20 @@ struct Schedule {
     fixed,        // always the first K cases of the training set
     fresh,        // the next K cases for every generation
     coevolution,  // K cases that are bred against the designs, generation by generation
+    growing,      // the first K cases; K grows from time to time (study/run/case_growth.hpp)
   };
+  // Returns true if the cases change along the run. Then not all objectives can be compared.
+  bool changes_cases() const { return kind != Kind::fixed; }
   // Returns true if each generation has its own cases. Then objectives of different generations
   // cannot be compared.
-  bool changes_cases() const { return kind != Kind::fixed; }
+  bool renews_cases() const { return kind == Kind::fresh || kind == Kind::coevolution; }
 
   Kind kind = Kind::fixed;
-  int cases = 1;  // K
+  int cases = 1;      // K; of growing the first one
+  double factor = 2;  // of growing, on K
 };
+
+inline constexpr double kLargestFactor = 1000;
 
 // The smallest K of coevolution. Breeding needs two parents and room for a child.
 inline constexpr int kFewestBredCases = 4;
@@ -59,12 +65,15 @@ std::optional<Schedule::Kind> find_schedule_kind(std::string_view name);
 // instead of "train/ID".
 std::string get_training_set(const std::string& set, const Schedule& schedule);
 
-// Reads "fresh:K", "fixed:K" or "coevolution:K". Returns nothing for any other text.
+// Reads "fresh:K", "fixed:K", "coevolution:K", "growing:K" or "growing:K:FACTOR". Returns nothing for
+// any other text.
 std::optional<Schedule> read_schedule(std::string_view text);
 std::string to_text(const Schedule& schedule);
 inline constexpr std::string_view kScheduleForms =
-    "fresh:K (the next K training cases for every generation), fixed:K (always the first K) or "
-    "coevolution:K (K that are bred against the designs), K from 1 to 1000000";
+    "fresh:K (the next K training cases for every generation), fixed:K (always the first K), "
+    "coevolution:K (K that are bred against the designs) or growing:K:FACTOR (the first K, and "
+    "FACTOR times as many whenever progress is within the noise between cases), K from 1 to "
+    "1000000, FACTOR above 1 and at most 1000";
 
 // Reads "none", "halving[:FIRST_CASES[:ETA]]" or "abandonment[:MARGIN[:CHUNK_CASES]]". Returns
 // nothing for any other text.

@@ -23,7 +23,7 @@ void add_training_case(const RecordedRun& run, ReplayList& replays) {
   const auto second = std::ranges::find_if(training, [&](const EvaluationRecord& record) {
     return record.generation > training.front().generation;
   });
-  const bool has_second = run.schedule.changes_cases() && second != training.end();
+  const bool has_second = run.schedule.renews_cases() && second != training.end();
   const CaseBlock& cases = (has_second ? *second : training.front()).cases;
   std::string reason =
       has_second ? "what the second generation was trained on" : "the first of training";

@@ -169,9 +169,7 @@ void read_manifest(RecordedRun& run) {
     run.started = manifest.value("started", "");
     const json& settings = run.configuration.at("run");
     run.budget = settings.at("budget").get<std::int64_t>();
-    const auto kind = settings.at("schedule").at("kind").get<std::string>();
-    run.schedule.kind = find_schedule_kind(kind).value_or(Schedule::Kind::fixed);
-    run.schedule.cases = settings.at("schedule").at("cases").get<int>();
+    run.schedule = read_recorded_schedule(settings.at("schedule"));
     settings.at("optimizer").get<std::string>();
     settings.at("options").get<std::map<std::string, json>>();
     settings.at("seed").get<std::uint64_t>();
@@ -314,7 +312,7 @@ std::vector<double> RecordedRun::find_best() const {
   if (result) {
     return result->winner ? result->judged[*result->winner].candidate.x : std::vector<double>{};
   }
-  const auto incumbents = find_incumbents(describe(), journal.training, schedule.changes_cases());
+  const auto incumbents = find_incumbents(describe(), journal.training, schedule);
   return incumbents.empty() ? std::vector<double>{}
                             : journal.training.find(incumbents.back().evaluation).value().x;
 }

@@ -161,8 +161,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
   const bool can_simulate = run.problem && find_user_description(*run.problem->problem) == nullptr;
   PageSimulator* used = options.simulate && can_simulate ? &simulator : nullptr;
   const auto incumbents =
-      thin_out(find_incumbents(description, run.journal.training, run.schedule.changes_cases()),
-               kMostIncumbents);
+      thin_out(find_incumbents(description, run.journal.training, run.schedule), kMostIncumbents);
   if (used != nullptr) {
     used->expect(incumbents.size() * static_cast<std::uint64_t>(count_incumbent_cases(run)));
   }

@@ -35,9 +35,9 @@ std::vector<Schedule> list_schedules(const StudyPlan& plan, std::size_t problem)
 std::int64_t count_training_cases(const StudyPlan& plan, std::span<const Schedule> schedules) {
   std::int64_t cases = 0;
   for (const Schedule& schedule : schedules) {
-    // Fresh cases: at most as many as the budget pays for.
+    // Fresh and growing cases: at most as many as the budget pays for.
     constexpr std::int64_t kMostHashed = 10'000;
-    if (schedule.kind == Schedule::Kind::fresh) {
+    if (schedule.kind == Schedule::Kind::fresh || schedule.kind == Schedule::Kind::growing) {
       cases = std::max(cases, std::min(plan.budget, kMostHashed));
     } else if (schedule.kind == Schedule::Kind::fixed) {
       cases = std::max(cases, std::int64_t{schedule.cases});

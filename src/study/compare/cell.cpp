@@ -54,13 +54,12 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
       where.executor != nullptr ? *where.executor : threads.emplace(where.jobs);
   const ProblemDescription& problem = run.problem.problem->description();
   const auto journal = read_journal(where.folder / "journal");
-  const auto incumbents = find_incumbents(problem, journal.training, run.schedule.changes_cases());
+  const auto incumbents = find_incumbents(problem, journal.training, run.schedule);
   const auto checkpoints = list_checkpoints(plan, cell.problem);
   const bool is_function = run.problem.tracking() == nullptr;
-  const auto traced = is_function
-                          ? thin_incumbents(find_incumbents(problem, journal.training, false),
-                                            kMostTracedOnFunctions, {})
-                          : thin_incumbents(incumbents, kMostTraced, checkpoints);
+  const auto traced = is_function ? thin_incumbents(find_incumbents(problem, journal.training, {}),
+                                                    kMostTracedOnFunctions, {})
+                                  : thin_incumbents(incumbents, kMostTraced, checkpoints);
   const auto find_incumbent = [&](std::int64_t budget) {
     const auto after = std::ranges::upper_bound(incumbents, budget, {}, &Incumbent::cases);
     return after == incumbents.begin() ? nullptr : &*std::prev(after);

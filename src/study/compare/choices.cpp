@@ -27,7 +27,7 @@ std::vector<std::vector<Candidate>> select_along(const RunPlan& run,
         break;
       }
       cases = after;
-      if (run.schedule.changes_cases() && record->generation != generation) {
+      if (run.schedule.renews_cases() && record->generation != generation) {
         pool.end_generation();
         generation = record->generation;
       }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 namespace armwright {
 namespace {
@@ -18,38 +17,49 @@ std::size_t count_found(std::span<const Incumbent> incumbents, double cases) {
 }  // namespace
 
 std::vector<Incumbent> find_incumbents(const ProblemDescription& problem,
-                                       const RecordedEvaluations& training, bool fresh) {
+                                       const RecordedEvaluations& training,
+                                       const Schedule& schedule) {
   std::vector<Incumbent> incumbents;
   std::optional<Incumbent> best;
   std::uint64_t generation = 0;
+  std::size_t cases_each = 0;
+  bool is_first = schedule.renews_cases();  // generation on these cases
   std::int64_t cases = 0;
   const auto end_generation = [&] {
-    if (best) {
+    if (is_first && best) {
       best->cases = cases;
-      incumbents.push_back(*std::exchange(best, std::nullopt));
+      incumbents.push_back(*best);
     }
+    is_first = false;
   };
   for (const EvaluationRecord& record : training) {
-    if (fresh && record.generation != generation) {
+    if (schedule.changes_cases() && record.generation != generation) {
       end_generation();
       generation = record.generation;
+      if (schedule.renews_cases()) {
+        best.reset();
+        is_first = true;
+      }
     }
     cases += static_cast<std::int64_t>(record.calc_charge());
     if (!is_feasible(record.evaluation)) {
       continue;
+    }
+    if (schedule.kind == Schedule::Kind::growing && record.cases.numbers.size() != cases_each) {
+      cases_each = record.cases.numbers.size();
+      best.reset();
+      is_first = true;
     }
     const double objective = calc_scalar(problem, record.evaluation.objectives);
     if (best && best->objective <= objective) {
       continue;
     }
     best = Incumbent{cases, record.index, objective};
-    if (!fresh) {
+    if (!is_first) {
       incumbents.push_back(*best);
     }
   }
-  if (fresh) {
-    end_generation();
-  }
+  end_generation();
   return incumbents;
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "problems/interface/schedule.hpp"
 #include "study/journal/journal.hpp"
 
 namespace armwright {
@@ -18,11 +19,12 @@ struct Incumbent {
 };
 
 // Returns the incumbents in their order; only feasible evaluations count. With fixed training cases
-// every strict improvement of the scalar objective is an incumbent. With `fresh` training cases
-// values of different generations cannot be compared. There the best design of each generation is
-// the incumbent, from the end of that generation on.
+// every strict improvement of the scalar objective is an incumbent. Values of different training cases
+// cannot be compared: after each change of the cases the best design of that generation is the
+// incumbent, from the end of that generation on.
 std::vector<Incumbent> find_incumbents(const ProblemDescription& problem,
-                                       const RecordedEvaluations& training, bool fresh);
+                                       const RecordedEvaluations& training,
+                                       const Schedule& schedule);
 
 // The largest number of incumbents of an arm that a cell simulates on the test set for its trace.
 // More are rare with fixed cases. With fresh cases every generation has one.

@@ -125,7 +125,8 @@ void check_method_settings(const ConfigTable& optimizer, const AnySetting& set,
                            "perturbation.* and {}",
                            sanitize(key), kController));
     }
-    if (key == "schedule.kind" || key == "schedule.cases" || key == "schedule.fixed_cases") {
+    if (key == "schedule.kind" || key == "schedule.cases" || key == "schedule.factor" ||
+        key == "schedule.fixed_cases") {
       optimizer.refuse(set, fmt::format("for {} write schedule = \"KIND:K\"", key));
     }
   }

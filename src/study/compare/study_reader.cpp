@@ -41,7 +41,8 @@ const Setting<std::int64_t> kStudySeed{
     "seed of the study, for starts, training cases and the optimizers' streams"};
 const Setting<std::string> kStudySchedule{
     "schedule", kNoDefault,
-    "training cases: fixed:K, fresh:K or coevolution:K for all optimizers, or own (fresh:1 for "
+    "training cases: fixed:K, fresh:K, coevolution:K or growing:K:FACTOR for all optimizers, or "
+    "own (fresh:1 for "
     "optimizers with generations, fixed:5 for the others; default: fixed, with the problem's K)"};
 const Setting<double> kStudyStartSpread{
     "start_spread",

@@ -22,7 +22,7 @@ inline constexpr Schedule kOwnWithGenerations{.kind = Schedule::Kind::fresh, .ca
 // ... and this one to all others.
 inline constexpr Schedule kOwnWithoutGenerations{.kind = Schedule::Kind::fixed, .cases = 5};
 
-// Reads "own", "fresh:K", "fixed:K" or "coevolution:K". Returns nothing for any other text.
+// Reads "own" or what read_schedule() reads. Returns nothing for any other text.
 std::optional<StudySchedule> read_study_schedule(std::string_view text);
 // Returns what read_study_schedule() reads, for messages.
 std::string describe_study_schedules();

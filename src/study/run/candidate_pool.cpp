@@ -91,7 +91,7 @@ std::vector<Candidate> RememberedCandidates::spread(std::size_t count) const {
 CandidatePool::CandidatePool(const RunPlan& plan)
     : problem_(plan.problem.problem->description()),
       selection_(plan.selection),
-      fresh_(plan.schedule.changes_cases()),
+      fresh_(plan.schedule.renews_cases()),
       candidates_(selection_, !problem_.constraints.empty()) {}
 
 CandidatePool::~CandidatePool() = default;
@@ -119,6 +119,13 @@ void CandidatePool::consider(const EvaluationRecord& record) {
   const double objective = calc_scalar(problem_, record.evaluation.objectives);
   if (problem_.objectives.size() > 1) {
     extend_front(record, objective);
+  }
+  if (record.cases.numbers.size() != cases_) {
+    cases_ = record.cases.numbers.size();
+    if (!fresh_ && incumbent_) {  // the cases have grown
+      last_best_ = incumbent_->training_objective;
+      incumbent_.reset();
+    }
   }
   if (incumbent_ && incumbent_->training_objective <= objective) {
     return;

@@ -1,6 +1,6 @@
 // Keeps the designs of a run that are worth judging on the validation set: with fixed training
-// cases every improvement, with changing cases the best of each generation (objectives on different
-// cases cannot be compared), with several objectives the front, and the optimizer's
+// cases every improvement, with growing cases every improvement of a stage, with new cases for every
+// generation the best of each (objectives on different cases cannot be compared), with several objectives the front, and the optimizer's
 // recommendations.
 #pragma once
 
@@ -59,9 +59,9 @@ class CandidatePool {
 
   void consider(const EvaluationRecord& record);  // must be feasible
   void recommend(std::vector<double> x, std::uint64_t generation);
-  void end_generation();  // only with changing training cases
+  void end_generation();  // only if each generation has its own training cases
   // Returns the incumbent's objective with fixed training cases. With changing cases, returns the
-  // best of this generation or, before there is any, of the last one. NaN if there is none.
+  // best on these cases or, before there is any, on the last ones. NaN if there is none.
   double best_objective() const;
   // Returns the incumbent's objective on the present training cases; infinity if there is none.
   double incumbent_objective() const;
@@ -78,10 +78,11 @@ class CandidatePool {
 
   const ProblemDescription& problem_;
   const Selection selection_;
-  const bool fresh_;  // the training cases change
-  // The best so far; with changing cases, of this generation.
+  const bool fresh_;  // each generation has its own training cases
+  // The best so far on the present training cases.
   std::optional<Candidate> incumbent_;
-  // With changing cases, the best objective of the generation before.
+  std::size_t cases_ = 0;  // of the incumbent; other numbers of cases are of another stage
+  // With changing cases, the best objective before the last change.
   double last_best_ = std::numeric_limits<double>::quiet_NaN();
   // All improvements and recommendations; with changing cases, the best of each generation.
   RememberedCandidates candidates_;

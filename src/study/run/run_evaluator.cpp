@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <span>
@@ -58,6 +59,9 @@ RunEvaluator::RunEvaluator(const RunPlan& plan, CaseExecutor& executor, StopSign
     breeder_.emplace(block_.set, plan.schedule.cases);
     block_.numbers = breeder_->genomes();
   }
+  if (plan.schedule.kind == Schedule::Kind::growing) {
+    growth_.emplace(plan);
+  }
 }
 
 bool RunEvaluator::stopped() const {
@@ -65,7 +69,8 @@ bool RunEvaluator::stopped() const {
 }
 
 std::int64_t RunEvaluator::remaining() const {
-  return (plan_.budget - static_cast<std::int64_t>(counts_.cases)) / plan_.schedule.cases;
+  return (plan_.budget - static_cast<std::int64_t>(counts_.cases)) /
+         static_cast<std::int64_t>(block_.numbers.size());
 }
 
 void RunEvaluator::begin_generation() {
@@ -83,8 +88,14 @@ void RunEvaluator::start_generation() {
     breeder_->breed();
     block_.numbers = breeder_->genomes();
   }
-  if (plan_.schedule.changes_cases()) {
+  if (plan_.schedule.renews_cases()) {
     candidates_.end_generation();
+    ++case_changes_;
+  }
+  if (growth_ && growth_->grow(calc_cases_left())) {
+    block_.numbers.resize(static_cast<std::size_t>(growth_->cases()));
+    std::iota(block_.numbers.begin(), block_.numbers.end(), std::uint64_t{0});
+    ++case_changes_;
   }
   ++counts_.generations;
 }
@@ -458,6 +469,10 @@ void RunEvaluator::finish_evaluation(EvaluationRecord record, Score& score) {
   if (breeder_ && evaluation.status != EvaluationStatus::abandoned &&
       !evaluation.objectives.empty()) {
     breeder_->add(record, calc_scalar(problem(), evaluation.objectives));
+  }
+  if (growth_) {
+    growth_->add(record, is_feasible(evaluation) ? calc_scalar(problem(), evaluation.objectives)
+                                                 : std::numeric_limits<double>::infinity());
   }
   if (is_feasible(evaluation)) {
     candidates_.consider(record);

@@ -1,7 +1,8 @@
 // The Evaluator of a run. It charges the budget exactly: a batch is cut where the budget ends, to
 // whole candidates. It clips points to the bounds and counts them, rounds discrete variables
 // (treated_problem.hpp), chooses the training cases,
-// races candidates (racing.hpp) and breeds cases (case_breeder.hpp). It answers from the journal
+// races candidates (racing.hpp), breeds cases (case_breeder.hpp) and lets them grow (case_growth.hpp).
+// It answers from the journal
 // what a former process has evaluated, appends all other evaluations to the journal as they finish,
 // and keeps the designs worth judging (candidate_pool.hpp).
 #pragma once
@@ -20,6 +21,7 @@
 #include "study/journal/journal.hpp"
 #include "study/run/candidate_pool.hpp"
 #include "study/run/case_breeder.hpp"
+#include "study/run/case_growth.hpp"
 #include "study/run/run_observer.hpp"
 #include "study/run/run_plan.hpp"
 #include "study/run/run_result.hpp"
@@ -49,6 +51,7 @@ class RunEvaluator final : public Evaluator {
   bool stopped() const override;
   std::int64_t remaining() const override;
   void begin_generation() override;
+  std::uint64_t case_changes() const override { return case_changes_; }
   void recommend(std::span<const double> x) override;
   void explain_end(std::string_view reason) override;
 
@@ -118,7 +121,9 @@ class RunEvaluator final : public Evaluator {
   std::optional<LateRecommendations> recorded_late_;
   std::optional<double> least_violation_;
   CaseBlock block_;
+  std::uint64_t case_changes_ = 0;
   std::optional<CaseBreeder> breeder_;  // set if the schedule breeds cases
+  std::optional<CaseGrowth> growth_;    // set if the cases grow
   CandidatePool candidates_;
 };
 

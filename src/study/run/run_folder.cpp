@@ -389,9 +389,7 @@ RunPlan load_recorded_plan(const std::filesystem::path& folder) {
     plan.options = Options::parse(plan.optimizer.name, plan.optimizer.options, options);
     plan.seed = run.at("seed").get<std::uint64_t>();
     plan.budget = run.at("budget").get<std::int64_t>();
-    const auto kind = find_schedule_kind(run.at("schedule").at("kind").get<std::string>());
-    plan.schedule = {.kind = kind.value_or(Schedule::Kind::fixed),
-                     .cases = run.at("schedule").at("cases").get<int>()};
+    plan.schedule = read_recorded_schedule(run.at("schedule"));
     const json& selection = run.at("selection");
     plan.selection = {.last = selection.at("last").get<int>(),
                       .best = selection.at("best").get<int>(),

@@ -89,8 +89,8 @@ void check_plan(const RunPlan& plan) {
   }
   if (plan.schedule.changes_cases() && !row.capabilities.generations) {
     throw Error(ErrorKind::usage,
-                fmt::format("optimizer '{}' has no generations, so new training cases for every "
-                            "generation (schedule {}) are not possible; use --schedule fixed:K, "
+                fmt::format("optimizer '{}' has no generations, so training cases that change "
+                            "between them (schedule {}) are not possible; use --schedule fixed:K, "
                             "which evaluates every candidate on the same K cases",
                             row.name, to_string(plan.schedule.kind)));
   }
@@ -166,6 +166,9 @@ std::string to_json(const RunPlan& plan) {
       {"schedule", {{"kind", to_string(plan.schedule.kind)}, {"cases", plan.schedule.cases}}},
       {"selection", {{"last", plan.selection.last}, {"best", plan.selection.best}}},
   };
+  if (plan.schedule.kind == Schedule::Kind::growing) {
+    run["schedule"]["factor"] = plan.schedule.factor;
+  }
   if (plan.selection.most > 0) {  // absent in plans of version 1.0
     run["selection"]["most"] = plan.selection.most;
   }
@@ -180,6 +183,13 @@ std::string to_json(const RunPlan& plan) {
   const json whole = {
       {"problem", json::parse(plan.problem.resolved_json)}, {"inputs", inputs}, {"run", run}};
   return whole.dump(2);
+}
+
+Schedule read_recorded_schedule(const json& schedule) {
+  const auto kind = find_schedule_kind(schedule.at("kind").get<std::string>());
+  return {.kind = kind.value_or(Schedule::Kind::fixed),
+          .cases = schedule.at("cases").get<int>(),
+          .factor = schedule.value("factor", Schedule{}.factor)};
 }
 
 std::string make_run_name(const RunPlan& plan) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -62,6 +63,8 @@ void check_plan(const RunPlan& plan);
 // Returns the plan as JSON text with sorted keys. Equal texts give bit-identical runs on the same
 // machine with the same version.
 std::string to_json(const RunPlan& plan);
+// Reads run.schedule of that text. Throws nlohmann::json::exception.
+Schedule read_recorded_schedule(const nlohmann::json& schedule);
 
 // Returns the name of the run: "q1-complex-ga-seed1".
 std::string make_run_name(const RunPlan& plan);

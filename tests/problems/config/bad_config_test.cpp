@@ -198,7 +198,7 @@ const std::vector<Mistake> kSets = {
     {"[sets]\nvalidation_cases = 1000001",
      "3: sets.validation_cases is 1000001; it must be an integer from 1 to 1000000"},
     {"[schedule]\nkind = 'new'",
-     "3: unknown schedule.kind 'new'. Valid: fixed, fresh, coevolution"},
+     "3: unknown schedule.kind 'new'. Valid: fixed, fresh, coevolution, growing"},
     {"[schedule]\nkind = 'coevolution'\ncases = 3",
      "4: schedule.cases is 3; it must be an integer from 4 to 1000000"},
     {"[racing]\nkind = 'half'", "3: unknown racing.kind 'half'. Valid: none, halving, abandonment"},

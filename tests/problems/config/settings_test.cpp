@@ -120,6 +120,7 @@ Specimen make_specimen(const std::string& path) {
       {"racing.eta", {"racing.kind=halving"}},
       {"racing.margin", {"racing.kind=abandonment"}},
       {"racing.chunk_cases", {"racing.kind=abandonment"}},
+      {"schedule.factor", {"schedule.kind=growing"}},
       {"objective.cvar_share", {"objective.statistic=cvar"}},
       {"objective.failure_penalty_m", {"objective.statistic=mean_with_failures"}},
       {"objective.energy_scale_j", {"objective.energy_weight=1"}},
@@ -254,7 +255,7 @@ TEST(Settings, SayWhatTheReadersCheck) {
   EXPECT_EQ(speed.describe_allowed(), "a finite number >= 0.0001 and <= 100");
   EXPECT_EQ(speed.default_text, "1.5");
   EXPECT_EQ(find(problem_settings(), "schedule.kind").describe_allowed(),
-            "one of these strings: fixed, fresh, coevolution");
+            "one of these strings: fixed, fresh, coevolution, growing");
   // Required, and read only if the kind of the objective needs it.
   EXPECT_EQ(find(problem_settings(), "objective.error_limit_m").default_text, "");
   EXPECT_EQ(find(problem_settings(), "requirement[].limit_rad_per_s").unit, "rad/s");
@@ -272,7 +273,8 @@ TEST(Settings, DefaultsAreThoseOfAProblemThatLeavesThemOut) {
         one.path.starts_with("identification.") || one.path.starts_with("excitation.") ||
         one.path.find("[]") != std::string::npos || one.path == "control.bandwidth_hz" ||
         one.path == "control.delay_s" || one.path.starts_with("control.resolution_") ||
-        one.path == "objective.cvar_share" || one.path == "objective.failure_penalty_m";
+        one.path == "schedule.factor" || one.path == "objective.cvar_share" ||
+        one.path == "objective.failure_penalty_m";
     // 0 is no density: it stands for a missing one.
     if (is_of_kind || one.setting->default_text.empty() || one.path == "robot.density_kg_per_m3") {
       continue;

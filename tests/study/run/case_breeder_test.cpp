@@ -197,7 +197,7 @@ TEST_F(RunTest, CoevolutionNeedsGenerationsAndRoomForChildren) {
   RunPlan plan = make_small_plan("random");
   plan.schedule = {.kind = Schedule::Kind::coevolution, .cases = 6};
   EXPECT_THAT(usage_error_of([&] { run(plan, "a"); }),
-              HasSubstr("generation (schedule coevolution) are not possible"));
+              HasSubstr("between them (schedule coevolution) are not possible"));
   plan = make_small_plan("ga");
   plan.schedule = {.kind = Schedule::Kind::coevolution, .cases = 3};
   EXPECT_THAT(usage_error_of([&] { run(plan, "a"); }),
