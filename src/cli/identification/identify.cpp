@@ -16,6 +16,7 @@
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/identification_view.hpp"
 #include "cli/views/result_view.hpp"
+#include "problems/config/config_files.hpp"
 #include "problems/identification/identification_problem.hpp"
 #include "study/run/run_folder.hpp"
 
@@ -35,7 +36,8 @@ plant.toml, which robots take as their plant, and identification.json with inter
 'armwright show' prints them again, and 'armwright report' makes a page with the arm moving as recorded.
 Logs of --validate are held back: they only judge. docs/identification.md explains formats, groups and figures.)";
 
-constexpr const char* kIdentifyProblem = "identify";
+// Beside the shipped problems, which have logs of their own.
+constexpr const char* kIdentifyProblem = "problems/_identify.toml";
 constexpr const char* kIdentifyOptimizer = "ceres:lm";
 
 struct IdentifyOptions : PlantRunOptions {
@@ -59,9 +61,10 @@ void add_settings(IdentifyOptions& options) {
       options.add_setting(kTable, key, key, write_list(words));
     }
   };
-  // Both replace the lists of the shipped problem, which names the recordings of the KR300.
   options.add_setting(kTable, "logs", "logs", write_files(options.logs));
-  options.add_setting(kTable, "validate", "validate", write_files(options.held_back));
+  if (!options.held_back.empty()) {
+    options.add_setting(kTable, "validate", "validate", write_files(options.held_back));
+  }
   add_list("columns", options.columns);
   add_list("units", options.units);
   add_list("gear_ratios", options.ratios);
@@ -74,7 +77,7 @@ void add_settings(IdentifyOptions& options) {
 
 int run_identify(IdentifyOptions options, Session& session) {
   add_settings(options);
-  options.problem = kIdentifyProblem;
+  options.problem = (find_config_folder() / kIdentifyProblem).string();
   if (options.optimizer.empty() && options.opt.empty()) {
     options.optimizer = kIdentifyOptimizer;
     options.opt = {"derivatives=exact", "transform=none"};

@@ -48,6 +48,12 @@ void PlantRunOptions::add_shared_settings(const std::string& table) {
 }
 
 RunRequest PlantRunOptions::make_request(Session& session) const {
+  if (overrides.robot.empty() &&
+      std::ranges::find(overrides.set, "robot.urdf", get_override_key) == overrides.set.end()) {
+    throw Error(ErrorKind::usage,
+                "--robot is required: the URDF or MJCF file of the robot, or a shipped robot "
+                "(armwright list robots)");
+  }
   RunRequest request;
   request.jobs = parse_jobs(jobs);
   apply_time_limit(time_limit, session.stop);

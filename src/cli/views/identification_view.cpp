@@ -25,6 +25,17 @@ std::string get_text(const json& object, const char* key) {
   return sanitize(object.at(key).get<std::string>());
 }
 
+// Returns the paths of logs as a user types them here: those in the current folder are relative.
+std::string name_logs(const json& logs) {
+  std::string names;
+  for (const auto& log : logs.get<std::vector<std::string>>()) {
+    const std::filesystem::path near =
+        std::filesystem::path(log).lexically_proximate(std::filesystem::current_path());
+    names += (names.empty() ? "" : ", ") + (near.string().starts_with("..") ? log : near.string());
+  }
+  return sanitize(names);
+}
+
 std::string describe_set(const json& set, const std::string& title, const Style& style) {
   Table table({{"joint", false},
                {"torque itself"},
@@ -43,8 +54,8 @@ std::string describe_set(const json& set, const std::string& title, const Style&
   }
   const double before = get_number(set, "error_before");
   const double after = get_number(set, "error_after");
-  const std::string logs = sanitize(join(set.at("logs").get<std::vector<std::string>>(), ", "));
-  return "\n" + style.bold(fmt::format("{}: {}", title, logs)) + "\n" + table.format(style, 2) +
+  return "\n" + style.bold(fmt::format("{}: {}", title, name_logs(set.at("logs")))) + "\n" +
+         table.format(style, 2) +
          fmt::format("  mean error, in deviations of the torque: {:.4g} -> {:.4g} ({:.3g} times)\n",
                      before, after, after / before);
 }
