@@ -197,6 +197,28 @@ TEST_F(Verify, OtherPlantsDifferFromThoseThatSettingsMake) {
   EXPECT_EQ(errors_m.size(), 4U);
 }
 
+// Drawn values would replace those that such a plant changes.
+TEST_F(Verify, OtherPlantsChangeTheValuesThatWereIdentified) {
+  std::ofstream(folder_.path() / "plant.toml")
+      << "[joint.shoulder]\narmature_kg_m2 = 0.5\nviscous_n_m_s_per_rad = 2\n[payload]\n"
+         "mass_kg = 4\ncom_m = [0.1, 0, 0]\n[identification]\ndelay_s = 0\n"
+         "logs = [\"a\"]\nparameters = [\"shoulder.armature\", \"shoulder.viscous\", "
+         "\"payload.mass\"]\n"
+         "values = [0.5, 2, 4]\ncovariance = [0.01, 0, 0.01, 0, 0, 0.01]\n";
+  const json verified =
+      json::parse(run({"verify", "start", "--robot", "planar2", "--plant", "plant.toml", "--cases",
+                       "2", "--engines", "ode", "--substeps", "10", "--perturbations",
+                       "none,lighter,lighter-rotors,heavier-rotors,more-friction", "--json", "-q"})
+                      .out);
+  ASSERT_EQ(verified["rows"].size(), 6U);
+  std::set<std::string> errors_m;
+  for (const json& row : verified["rows"]) {
+    EXPECT_TRUE(row["mean_error_m"].is_number()) << row;
+    errors_m.insert(row["mean_error_m"].dump());
+  }
+  EXPECT_EQ(errors_m.size(), 6U);
+}
+
 // With the fewest substeps that the own springs allow, lighter masses need more of them. Two
 // numbers of substeps that are too few give one row.
 TEST_F(Verify, GivesSpringsTheirSubsteps) {

@@ -240,7 +240,11 @@ std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
     return {};
   }
   if (const OtherPlant* other = find_other_plant(setting.perturbation)) {
-    return list_scale_overrides(other->changes, config.plant_scales);
+    std::vector<std::string> overrides = list_scale_overrides(other->changes, config.plant_scales);
+    if (config.fitted_plant) {  // drawn values would replace those that are changed
+      overrides.emplace_back("perturbation.fitted=none");
+    }
+    return overrides;
   }
   if (setting.perturbation == kNoPerturbation) {
     return config.perturbation.applies_to(CaseRole::test) ? make_overrides(Perturbation{})

@@ -184,6 +184,10 @@ RobotModel scale_masses(RobotModel model, double factor) {
     link.inertial.mass_kg *= factor;
     link.inertial.inertia_kg_m2 *= factor;
   }
+  if (model.payload) {  // a part of the last link
+    model.payload->mass_kg *= factor;
+    model.payload->inertia_kg_m2 *= factor;
+  }
   return model;
 }
 

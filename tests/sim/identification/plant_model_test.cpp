@@ -122,6 +122,17 @@ TEST(Payload, IsTheSameAsALoadOfTheTask) {
       1e-11);
 }
 
+// Verification scales all masses, and each case then has a payload of its own.
+TEST(Payload, IsScaledWithTheLinkThatItIsAPartOf) {
+  const RobotModel arm = load_urdf(ARMWRIGHT_CONFIGS "/robots/irb4600_six.urdf");
+  RobotModel with = arm;
+  set_payload(with, {200, {0.1, -0.2, 0.3}, Eigen::Matrix3d::Identity()});
+  RobotModel bare = scale_masses(with, 0.9);
+  set_payload(bare, {});
+  const LinkNumbers expected = to_link_numbers(scale_masses(arm, 0.9).links.back().inertial);
+  EXPECT_LT((to_link_numbers(bare.links.back().inertial) - expected).norm(), 1e-11);
+}
+
 // An arm with everything that can be fitted.
 RobotModel make_rich_arm() {
   RobotModel arm = load_urdf(ARMWRIGHT_CONFIGS "/robots/irb4600_six.urdf");
