@@ -6,8 +6,8 @@
     >>> run.summary["mean"]                            # metres, on the test set
 
 Problem.evaluate() evaluates points. Problem.evaluate_design() judges a design. To write an optimizer, derive a class from Optimizer.
-For a problem of your own, derive one from UserProblem, or call make_problem(). compare() compares optimizers. docs/python.md describes all of
-this. The results are the same as those of the program `armwright`, bit for bit.
+For a problem of your own, derive one from UserProblem, or call make_problem(). compare() compares optimizers. identify() finds a robot's plant in
+recorded motions. docs/python.md describes all of this. The results are the same as those of the program `armwright`, bit for bit.
 """
 
 try:
@@ -18,6 +18,7 @@ except ImportError as error:
     raise ImportError(explain(error)) from None
 from .description import Description, Quantity, Variable
 from .errors import ArmwrightWarning, BadDataError, BusyError, Error, IoError, UsageError
+from .identification import identify
 from .optimizer import CAPABILITIES, Evaluator, Finding, Optimizer, OptimizerInfo, Option, Scores, check_optimizer, optimizers
 from .problem import DesignEvaluation, Evaluations, Problem, list_designs, list_problems, load_problem
 from .progress import Progress
@@ -67,6 +68,7 @@ __all__ = [
     "Variable",
     "check_optimizer",
     "compare",
+    "identify",
     "list_designs",
     "list_problems",
     "load_problem",

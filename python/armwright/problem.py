@@ -324,6 +324,7 @@ def load_problem(
     robot: Union[None, str, Path] = None,
     base: Optional[str] = None,
     tip: Optional[str] = None,
+    plant: Union[None, str, Path] = None,
 ) -> Problem:
     """Loads a problem.
 
@@ -335,6 +336,8 @@ def load_problem(
         Settings to change, as with --set of the program: {"physics.engine": "articulated", "task.load_kg": 20}, or KEY=VALUE texts.
     robot, base, tip : str, optional
         An arm of your own: its URDF (or the name of a shipped robot), and the links at which it begins and ends.
+    plant : str or path, optional
+        The file of the robot's plant, such as the plant.toml that identify() writes.
 
     Examples
     --------
@@ -344,11 +347,12 @@ def load_problem(
     """
     settings = to_settings(set)
     if is_user_problem(name):
-        if not robot is base is tip is None:
-            raise UsageError("robot, base and tip describe an arm; a problem of your own has none")
+        if not robot is base is tip is plant is None:
+            raise UsageError("robot, base, tip and plant describe an arm; a problem of your own has none")
         return _load_own(cast(AnyUserProblem, name), settings)
-    if robot is not None:
-        settings.append(f"robot.urdf={quote_words(str(Path(_armwright.resolve_config('robots', str(robot))).absolute()))}")
+    for key, kind, file in (("urdf", "robots", robot), ("plant", "plants", plant)):
+        if file is not None:
+            settings.append(f"robot.{key}={quote_words(str(Path(_armwright.resolve_config(kind, str(file))).absolute()))}")
     for key, link in (("base", base), ("tip", tip)):
         if link is not None:
             settings.append(f"robot.{key}={quote_words(link)}")

@@ -153,6 +153,21 @@ class Run:
         return self._history
 
     @property
+    def identification(self) -> Optional[dict[str, Any]]:
+        """What identify() found, as identification.json has it; None if the run is of another kind or not finished.
+
+        `doubts` comes first. `parameters` is a list of dicts with name, unit, before, start, value, standard_error, lower and upper (the 95 %
+        interval), determined and at_bound. `undetermined` says in words what the motion cannot tell, `correlations` which estimates depend on
+        each other. `fitted` and `held_back` (if there are such logs) have logs, error_before, error_after, and per joint rms_before,
+        rms_after, deviation, whiteness_p and independent_s. `motions` has the recorded and modelled efforts of each log.
+        """
+        file = self.folder / "identification.json"
+        if not self.finished or not file.is_file():
+            return None
+        content: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        return content
+
+    @property
     def manifest(self) -> dict[str, Any]:
         """The request and the program that made the run: configuration, build, command line, time."""
         return self._manifest
