@@ -55,6 +55,19 @@ test('the first screen has the doubts before the errors, and both as they were r
   await page.close();
 });
 
+test('a parameter whose interval has 0 in it is not called told', async () => {
+  const { parameters } = found();
+  const { page, expect_no_faults } = await open();
+  await open_tab(page, 'parameters');
+  const states = await page.locator('[data-figure=parameters-table] tbody tr td:last-child').allInnerTexts();
+  const zero = parameters.filter((one) => one.determined && !one.at_bound && one.lower <= 0 && one.upper >= 0);
+  assert.ok(zero.length > 0);
+  assert.equal(states.filter((state) => state === '? may be 0').length, zero.length);
+  assert.equal(states[parameters.indexOf(zero[0])], '? may be 0');
+  expect_no_faults();
+  await page.close();
+});
+
 test('the arm moves as it was recorded, with the clock of the torques', async () => {
   const { page, expect_no_faults } = await open_motion();
   const motion = found().motions[1]; // the log that was held back

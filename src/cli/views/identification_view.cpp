@@ -60,6 +60,14 @@ std::string describe_set(const json& set, const std::string& title, const Style&
                      before, after, after / before);
 }
 
+std::string describe_state(const json& parameter) {
+  if (!parameter.at("determined").get<bool>()) {
+    return "cannot be told";
+  }
+  return get_number(parameter, "lower") <= 0 && get_number(parameter, "upper") >= 0 ? "may be 0"
+                                                                                    : "";
+}
+
 std::string describe_parameters(const json& parameters, const Style& style) {
   Table table({{"parameter", false},
                {"before"},
@@ -73,8 +81,7 @@ std::string describe_parameters(const json& parameters, const Style& style) {
                    format_significant(get_number(parameter, "value"), 5),
                    fmt::format("{:.4g} to {:.4g}", get_number(parameter, "lower"),
                                get_number(parameter, "upper")),
-                   get_text(parameter, "unit"),
-                   parameter.at("determined").get<bool>() ? "" : "cannot be told"});
+                   get_text(parameter, "unit"), describe_state(parameter)});
   }
   return table.format(style, 0);
 }

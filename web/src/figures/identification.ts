@@ -69,6 +69,7 @@ export function make_identification_headline(data: RunData, found: Identificatio
   const { parameters } = found;
   const untold = parameters.filter((one) => !one.determined).length;
   const at_bound = parameters.filter((one) => one.at_bound).length;
+  const zero = parameters.filter(may_be_zero).length;
   const { times } = data.headline;
   const tiles: Tile[] = [
     ...(found.held_back === null ? [] : [make_error_tile('Error on logs held back', found.held_back)]),
@@ -78,6 +79,7 @@ export function make_identification_headline(data: RunData, found: Identificatio
       value: String(parameters.length),
       detail: [
         untold > 0 ? `${untold} cannot be told from the motions` : 'all can be told from the motions',
+        zero > 0 ? `${zero} may be 0` : '',
         at_bound > 0 ? `${at_bound} at the end of the range` : '',
       ]
         .filter((text) => text !== '')
@@ -144,11 +146,19 @@ export function make_fit_table(found: Identification): TableItem {
   };
 }
 
+// Whether the interval has 0 in it.
+function may_be_zero(one: FittedParameter): boolean {
+  return one.determined && is_number(one.lower) && is_number(one.upper) && one.lower <= 0 && one.upper >= 0;
+}
+
 function describe_state(one: FittedParameter): Cell {
   if (!one.determined) {
     return { value: '? cannot be told', mark: 'none' };
   }
-  return one.at_bound ? { value: '! at the end of its range', mark: 'near' } : { value: '✓ told', mark: 'good' };
+  if (one.at_bound) {
+    return { value: '! at the end of its range', mark: 'near' };
+  }
+  return may_be_zero(one) ? { value: '? may be 0', mark: 'none' } : { value: '✓ told', mark: 'good' };
 }
 
 export function make_parameter_table(found: Identification): TableItem {
