@@ -52,6 +52,11 @@ function format_error(track: Track, moment: number): string {
   return error === null ? 'ended' : `${format_number(error * kMillimetres, 3)} mm`;
 }
 
+// A number that rounds to 0 has no sign.
+function format_position(value: number): string {
+  return value.toFixed(2).replace(/^-0\.00$/, '0.00');
+}
+
 // Returns the effort of a joint at a moment after the start.
 function find_effort(track: Track, moment: number, joint: number, joints: number): number | null {
   return moment > 0 && moment <= track.count ? track.effort[(moment - 1) * joints + joint] : null;
@@ -112,7 +117,7 @@ export class Panel {
     const { look } = this;
     this.rows.joints.forEach((row, i) => {
       const revolute = scenario.chain.robot.joints[i].kind === 'revolute';
-      const position = revolute ? `${(q[i] * kDegrees).toFixed(2)}°` : `${(q[i] * kMillimetres).toFixed(2)} mm`;
+      const position = revolute ? `${format_position(q[i] * kDegrees)}°` : `${format_position(q[i] * kMillimetres)} mm`;
       const effort = scenario.is_recorded && track !== null ? find_effort(track, moment, i, this.rows?.joints.length ?? 0) : null;
       const unit = revolute ? 'N m' : 'N';
       const state = effort === null ? position : `${position}, ${format_number(effort, 3)} ${unit}`;
