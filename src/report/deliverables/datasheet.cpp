@@ -89,7 +89,7 @@ std::string make_task_facts(const FinishedArm& arm) {
       {"Points", describe_points(config)},
       {"Workspace", describe_workspace(config)},
       {"Tool", tool_orientation_names()[static_cast<std::size_t>(task.tool.orientation)]},
-      {"Plants", plants.empty() ? "nominal in all cases" : "in each case other ones: " + plants},
+      {"Plants", plants.empty() ? "" : "other ones in each case: " + plants},
       {"Controller",
        fmt::format("{}, every {:.4g} s", arm.design.controller, task.control_period_s)},
       {"Physics", config.engines.training_name == config.engines.judging_name
