@@ -36,6 +36,10 @@ class StartedElsewhere final : public WrappedProblem {
                        std::span<const CaseOutcome> outcomes) const override {
     return problem_->aggregate(x, outcomes);
   }
+  std::vector<double> calc_case_objectives(std::span<const double> x,
+                                           const Evaluation& evaluation) const override {
+    return problem_->calc_case_objectives(x, evaluation);
+  }
   std::optional<double> calc_lower_bound(std::span<const double> x,
                                          std::span<const CaseOutcome> outcomes,
                                          std::size_t cases) const override {

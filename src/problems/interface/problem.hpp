@@ -254,6 +254,14 @@ class Problem {
   virtual Evaluation aggregate(std::span<const double> x,
                                std::span<const CaseOutcome> outcomes) const = 0;
 
+  // Returns calc_scalar() of the objectives that `x` would have on each case of `evaluation` alone, as
+  // far as its errors tell: what else enters an objective counts as in the evaluation. One number per
+  // case, NaN for a case without an error.
+  virtual std::vector<double> calc_case_objectives(std::span<const double> /*x*/,
+                                                   const Evaluation& evaluation) const {
+    return evaluation.case_errors;
+  }
+
   // Returns a lower bound of calc_scalar() of the objectives of `x` on a block of `cases` cases.
   // `outcomes` are those of the block's first cases; there may be none. Returns nothing if the
   // problem knows no bound, because a further case could make the objectives smaller. Whether there

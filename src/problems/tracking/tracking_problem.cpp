@@ -442,6 +442,28 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   return evaluation;
 }
 
+std::vector<double> TrackingProblem::calc_case_objectives(std::span<const double> x,
+                                                          const Evaluation& evaluation) const {
+  ObjectiveTerms terms;
+  for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
+    const std::string& name = description_.metrics[i].name;
+    if (name == "energy") {
+      terms.energy_j = evaluation.metrics[i];
+    } else if (name == "duration") {
+      terms.duration_s = evaluation.metrics[i];
+    }
+  }
+  terms.torque_n_m = calc_total_effort(make_design(x));
+  std::vector<double> objectives;
+  for (const double error_m : evaluation.case_errors) {
+    terms.error_m = error_m;
+    objectives.push_back(
+        std::isnan(error_m) ? error_m
+                            : calc_scalar(description_, calc_objectives(config_.objective, terms)));
+  }
+  return objectives;
+}
+
 std::optional<double> TrackingProblem::calc_lower_bound(std::span<const double> x,
                                                         std::span<const CaseOutcome> outcomes,
                                                         std::size_t cases) const {

@@ -62,6 +62,8 @@ class TrackingProblem final : public Problem {
   std::vector<CaseOutcome> simulate(std::span<const CaseJob> jobs) const override;
   Evaluation aggregate(std::span<const double> x,
                        std::span<const CaseOutcome> outcomes) const override;
+  std::vector<double> calc_case_objectives(std::span<const double> x,
+                                           const Evaluation& evaluation) const override;
   std::optional<double> calc_lower_bound(std::span<const double> x,
                                          std::span<const CaseOutcome> outcomes,
                                          std::size_t cases) const override;

@@ -1,11 +1,11 @@
 // Decides when a run gets more training cases (schedule `growing`). All candidates between two growths
 // have the same first K cases: a stage. At the beginning of a generation the cases grow if both hold:
-//   - the stage has had more than w evaluations, w = max(n, evaluations of the last generation), n the
-//     number of decision variables,
+//   - the stage has had more than w evaluations, w = max(3 n, evaluations of the last generation), n
+//     the number of decision variables,
 //   - the best objective has improved by less than its noise over the last w evaluations,
-//       b_(t-w) - b_t < |b_t| s / (m sqrt(K)),
-//     where m and s are the mean and the standard deviation of the best design's errors on its K cases.
-//     With one case s = m is assumed.
+//       b_(t-w) - b_t < s / sqrt(K),
+//     where s is the standard deviation of the objectives that the best design would have on each of
+//     its K cases alone (Problem::calc_case_objectives). One case has no deviation and always grows.
 // What is gained within the noise between cases may be a gain on these cases alone, and one that other
 // cases take back. Then K becomes max(K + 1, K FACTOR), rounded, but at most the cases that the problem
 // has, and only if the budget pays for n + 1 evaluations on them.
@@ -24,10 +24,10 @@ namespace armwright {
 
 class CaseGrowth {
  public:
-  explicit CaseGrowth(const RunPlan& plan);
+  explicit CaseGrowth(const RunPlan& plan);  // its problem must outlive the growth
 
   int cases() const { return cases_; }  // K
-  // Adds a finished evaluation of the stage, with its objective; infinity if it has none.
+  // Adds a finished evaluation of the stage, with its objective; infinity if it is not feasible.
   void add(const EvaluationRecord& record, double objective);
   // To be called at the beginning of a generation. Returns true if the cases have grown.
   bool grow(std::uint64_t cases_left);
@@ -35,11 +35,11 @@ class CaseGrowth {
  private:
   double calc_noise() const;
 
-  std::size_t variables_;
+  const Problem& problem_;
   double factor_;
   int cases_, most_;
-  std::vector<double> best_;         // per evaluation of the stage, the best objective so far
-  std::vector<double> best_errors_;  // of the best design
+  std::vector<double> best_;             // per evaluation of the stage, the best objective so far
+  std::vector<double> case_objectives_;  // of the best design
   std::size_t generation_begin_ = 0;
 };
 

@@ -81,7 +81,7 @@ export const kTerms: Term[] = [
     name: 'schedule',
     pattern: 'schedules?',
     meaning:
-      'The rule that gives a candidate its training cases: fixed:K (the first K), fresh:K (the next K for every generation) or coevolution:K (K bred cases).',
+      'The rule that gives a candidate its training cases: fixed:K (the first K), fresh:K (the next K for every generation), coevolution:K (K bred cases) or growing:K:FACTOR (the first K, and FACTOR times as many whenever progress is within the noise between cases).',
   },
   {
     name: 'success',
