@@ -1,266 +1,80 @@
 // Measures how many evaluations CMA-ES needs: ours, pagmo's and the published ones. Prints the
 // tables of docs/cmaes.md as Markdown and takes two minutes. With --integers FILE, it prints the
-// table of functions with integers only, and writes it to the file as CSV.
+// table of functions with integers only, and writes it to the file as CSV. With --surrogate FILE, it
+// prints the table of the surrogate only, beside the runs of pycma in the file
+// (benchmarks/pycma_surrogate.py), which began at the starts that --starts prints.
 //
 //   build/release/bin/cmaes_benchmark > table.md
 //   build/release/bin/cmaes_benchmark --integers results/mixed-integer/cmaes.csv
-#include <fmt/format.h>
+//   build/release/bin/cmaes_benchmark --surrogate results/surrogate/pycma.csv
+#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
-#include <functional>
 #include <limits>
-#include <memory>
-#include <numbers>
-#include <optional>
-#include <string>
+#include <map>
+#include <sstream>
 #include <string_view>
-#include <utility>
-#include <vector>
 
-#include "base/random.hpp"
-#include "optimizers/interface/optimizer.hpp"
-#include "optimizers/table/optimizer_table.hpp"
+#include "cmaes_runs.hpp"
 #include "problems/analytic/analytic.hpp"
-
-#ifdef ARMWRIGHT_WITH_PAGMO
-#include <pagmo/algorithm.hpp>
-#include <pagmo/algorithms/cmaes.hpp>
-#include <pagmo/population.hpp>
-#include <pagmo/problem.hpp>
-#endif
 
 namespace {
 
 using namespace armwright;
-using Vector = std::vector<double>;
-
-double calc_sphere(std::span<const double> x) {
-  double sum = 0;
-  for (const double xi : x) {
-    sum += xi * xi;
-  }
-  return sum;
-}
-
-double calc_ellipsoid(std::span<const double> x) {
-  double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    sum += std::pow(1e6, static_cast<double>(i) / static_cast<double>(x.size() - 1)) * x[i] * x[i];
-  }
-  return sum;
-}
-
-double calc_rosenbrock(std::span<const double> x) {
-  double sum = 0;
-  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
-    sum += 100 * std::pow(x[i + 1] - x[i] * x[i], 2) + std::pow(1 - x[i], 2);
-  }
-  return sum;
-}
-
-double calc_rastrigin(std::span<const double> x) {
-  double sum = 0;
-  for (const double xi : x) {
-    sum += xi * xi + 10 * (1 - std::cos(2 * std::numbers::pi * xi));
-  }
-  return sum;
-}
-
-struct Function {
-  const char* name = "";
-  std::function<double(std::span<const double>)> calc;
-};
-
-// A function on [-half_width, half_width]^n, and the range in which its search starts.
-struct Setting {
-  Function function;
-  int dimension = 10;
-  double half_width = 100;  // the sources search without bounds
-  double start_lower = 0;   // the start is uniform in [start_lower, start_upper]^n
-  double start_upper = 0;
-  double sigma = 1;
-  int population = 0;  // 0: the default
-  double target = 1e-8;
-  std::int64_t budget = 1000000;
-  const char* restarts = "none";
-  const char* published = "";
-};
 
 constexpr int kSeeds = 15;
+constexpr double kNever = std::numeric_limits<double>::infinity();  // evaluations of a failure
 
-Vector draw_start(const Setting& setting, int seed) {
-  RandomStream random("benchmark/cmaes/start", static_cast<std::uint64_t>(seed));
-  Vector start(static_cast<std::size_t>(setting.dimension));
-  for (double& value : start) {
-    value = setting.start_lower + (setting.start_upper - setting.start_lower) * random.uniform();
-  }
-  return start;
-}
-
-std::vector<DecisionVariable> make_variables(const Setting& setting, int seed) {
-  std::vector<DecisionVariable> variables;
-  for (const double value : draw_start(setting, seed)) {
-    variables.push_back({"x", "", -setting.half_width, setting.half_width, value, Scale::linear});
-  }
-  return variables;
-}
-
-// Counts evaluations until the target is met, then stops.
-class TargetEvaluator : public Evaluator {
- public:
-  TargetEvaluator(const Setting& setting, std::vector<DecisionVariable> variables)
-      : setting_(setting) {
-    problem_.name = setting.function.name;
-    problem_.variables = std::move(variables);
-    problem_.objectives = {{"f", ""}};
-  }
-
-  const ProblemDescription& problem() const override { return problem_; }
-  std::vector<Score> evaluate(std::span<const Vector> points) override {
-    std::vector<Score> scores;
-    for (const Vector& point : points) {
-      if (stopped()) {
-        break;
-      }
-      ++count_;
-      scores.push_back({.objectives = {setting_.function.calc(point)},
-                        .constraint_values = {},
-                        .residuals = {},
-                        .jacobian = {}});
-      hit_ = hit_ || scores.back().objectives[0] < setting_.target;
-    }
-    return scores;
-  }
-  bool stopped() const override { return hit_ || count_ >= setting_.budget; }
-  std::int64_t remaining() const override { return stopped() ? 0 : setting_.budget - count_; }
-  void begin_generation() override {}
-  void recommend(std::span<const double> /*x*/) override {}
-
-  std::int64_t count() const { return count_; }
-  bool hit() const { return hit_; }
-
- private:
-  const Setting& setting_;
-  ProblemDescription problem_;
-  std::int64_t count_ = 0;
-  bool hit_ = false;
-};
-
-struct Outcome {
-  bool hit = false;
-  std::int64_t evaluations = 0;
-};
-
-// Runs cmaes on the given variables, or on those of the setting.
-Outcome run_own(const Setting& setting, int seed, const std::vector<std::string>& more = {},
-                std::vector<DecisionVariable> variables = {}) {
-  const OptimizerRow& row = find_optimizer("cmaes");
-  std::vector<std::string> assignments = {
-      fmt::format("sigma={}", setting.sigma / (2 * setting.half_width)),
-      fmt::format("population={}", setting.population),
-      fmt::format("restarts={}", setting.restarts),
-      fmt::format("tol_fun={}", std::min(1e-12, 1e-4 * std::abs(setting.target)))};
-  assignments.insert(assignments.end(), more.begin(), more.end());
-  TargetEvaluator evaluator(
-      setting, variables.empty() ? make_variables(setting, seed) : std::move(variables));
-  row.make(Options::parse("cmaes", row.options, assignments))
-      ->minimize(evaluator, static_cast<std::uint64_t>(seed));
-  return {evaluator.hit(), evaluator.count()};
-}
-
-#ifdef ARMWRIGHT_WITH_PAGMO
-struct PagmoFunction {
-  struct Shared {
-    const Setting* setting = nullptr;
-    std::int64_t count = 0;
-    std::optional<std::int64_t> hit_at;
-  };
-  Shared* shared = nullptr;
-
-  Vector fitness(const Vector& x) const {
-    ++shared->count;
-    const double value = shared->setting->function.calc(x);
-    if (value < shared->setting->target && !shared->hit_at) {
-      shared->hit_at = shared->count;
-    }
-    return {value};
-  }
-  std::pair<Vector, Vector> get_bounds() const {
-    const auto n = static_cast<std::size_t>(shared->setting->dimension);
-    return {Vector(n, -shared->setting->half_width), Vector(n, shared->setting->half_width)};
-  }
-};
-
-// Runs pagmo's CMA-ES without any help. The initial population is sampled around the start as
-// pagmo's strategy would do it, and the mean begins at its best member.
-Outcome run_pagmo(const Setting& setting, int seed) {
-  PagmoFunction::Shared shared{.setting = &setting, .count = 0, .hit_at = {}};
-  const int population = setting.population > 0
-                             ? setting.population
-                             : 4 + static_cast<int>(3 * std::log(setting.dimension));
-  pagmo::population members{pagmo::problem{PagmoFunction{&shared}}, 0u,
-                            static_cast<unsigned>(seed)};
-  const Vector start = draw_start(setting, seed);
-  RandomStream random("benchmark/cmaes/pagmo", static_cast<std::uint64_t>(seed));
-  members.push_back(start);
-  for (int i = 1; i < population; ++i) {
-    Vector x = start;
-    for (double& value : x) {
-      value = std::clamp(value + setting.sigma * random.normal(), -setting.half_width,
-                         setting.half_width);
-    }
-    members.push_back(x);
-  }
-  // pagmo's sigma is a share of the box as well (its initial covariance is scaled by the bounds).
-  pagmo::algorithm algorithm{pagmo::cmaes(1u, -1, -1, -1, -1,
-                                          setting.sigma / (2 * setting.half_width), 0, 0, true,
-                                          true, static_cast<unsigned>(seed))};
-  while (!shared.hit_at && shared.count < setting.budget) {
-    const std::int64_t before = shared.count;
-    members = algorithm.evolve(members);
-    if (shared.count == before) {
-      break;
-    }
-  }
-  return {shared.hit_at.has_value(), shared.hit_at.value_or(shared.count)};
-}
-#endif
-
-std::string describe(const std::function<Outcome(int)>& run) {
+std::vector<double> count_evaluations(const std::function<Outcome(int)>& run) {
   std::vector<double> counts;
-  int hits = 0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     const Outcome outcome = run(seed);
-    hits += outcome.hit ? 1 : 0;
-    counts.push_back(outcome.hit ? static_cast<double>(outcome.evaluations)
-                                 : std::numeric_limits<double>::infinity());
+    counts.push_back(outcome.hit ? static_cast<double>(outcome.evaluations) : kNever);
   }
+  return counts;
+}
+
+double calc_median(std::vector<double> counts) {
   std::ranges::sort(counts);
-  const double median = counts[kSeeds / 2];
-  return std::isfinite(median) ? fmt::format("{:.0f} ({}/{})", median, hits, kSeeds)
-                               : fmt::format("- ({}/{})", hits, kSeeds);
+  return counts.empty() ? kNever : counts[counts.size() / 2];
+}
+
+std::string describe(const std::vector<double>& counts) {
+  const double median = calc_median(counts);
+  const auto misses = std::ranges::count(counts, kNever);
+  return fmt::format("{} ({}/{})",
+                     std::isfinite(median) ? fmt::format("{:.0f}", median) : std::string("-"),
+                     static_cast<std::ptrdiff_t>(counts.size()) - misses, counts.size());
+}
+
+std::string describe(const std::function<Outcome(int)>& run) {
+  return describe(count_evaluations(run));
+}
+
+std::vector<Setting> make_smooth_settings() {
+  std::vector<Setting> settings;
+  for (const int n : {10, 20}) {
+    Setting setting{.function = {"sphere", calc_sphere},
+                    .dimension = n,
+                    .start_lower = -4,
+                    .start_upper = 4,
+                    .sigma = 2};
+    settings.push_back(setting);
+    setting.function = {"ellipsoid", calc_ellipsoid};
+    settings.push_back(setting);
+    setting = {.function = {"rosenbrock", calc_rosenbrock}, .dimension = n, .sigma = 0.5};
+    settings.push_back(setting);
+  }
+  return settings;
 }
 
 std::vector<Setting> make_settings() {
-  const Function sphere{"sphere", calc_sphere};
   const Function ellipsoid{"ellipsoid", calc_ellipsoid};
   const Function rosenbrock{"rosenbrock", calc_rosenbrock};
   const Function rastrigin{"rastrigin", calc_rastrigin};
-  std::vector<Setting> settings;
-  for (const int n : {10, 20}) {
-    Setting setting{
-        .function = sphere, .dimension = n, .start_lower = -4, .start_upper = 4, .sigma = 2};
-    settings.push_back(setting);
-    setting.function = ellipsoid;
-    settings.push_back(setting);
-    setting = {.function = rosenbrock, .dimension = n, .sigma = 0.5};
-    settings.push_back(setting);
-  }
+  std::vector<Setting> settings = make_smooth_settings();
   // The runs that pycma's documentation prints.
   Setting run{.function = rosenbrock, .dimension = 8, .sigma = 0.5, .target = 1.272e-11};
   run.published = "4000 [1]";
@@ -459,6 +273,73 @@ void print_integers(const std::string& file) {
   }
 }
 
+// Prints the starts of the smooth functions for benchmarks/pycma_surrogate.py.
+void print_starts() {
+  std::string separator = "[";
+  for (const Setting& s : make_smooth_settings()) {
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      fmt::print(
+          "{}\n{{\"function\": \"{}\", \"seed\": {}, \"sigma\": {}, \"target\": {}, "
+          "\"budget\": {}, \"start\": [{}]}}",
+          separator, s.function.name, seed, s.sigma, s.target, s.budget,
+          fmt::join(draw_start(s, seed), ", "));
+      separator = ",";
+    }
+  }
+  fmt::print("\n]\n");
+}
+
+// The runs of pycma on one function, as benchmarks/pycma_surrogate.py stores them.
+struct StoredRuns {
+  std::vector<double> plain;
+  std::vector<double> surrogate;
+};
+
+std::map<std::string, StoredRuns> read_stored_runs(const std::string& file) {
+  std::map<std::string, StoredRuns> runs;
+  std::ifstream csv(file);
+  std::string line;
+  std::getline(csv, line);  // the version
+  std::getline(csv, line);  // the names of the columns
+  while (std::getline(csv, line)) {
+    std::istringstream fields(line);
+    std::string function;
+    std::string n;
+    std::string seed;
+    std::string plain;
+    std::string surrogate;
+    std::getline(fields, function, ',');
+    std::getline(fields, n, ',');
+    std::getline(fields, seed, ',');
+    std::getline(fields, plain, ',');
+    std::getline(fields, surrogate, ',');
+    StoredRuns& stored = runs[function + "," + n];
+    stored.plain.push_back(plain.empty() ? kNever : std::stod(plain));
+    stored.surrogate.push_back(surrogate.empty() ? kNever : std::stod(surrogate));
+  }
+  return runs;
+}
+
+// Compares the surrogate with the plain strategy, here and in pycma.
+void print_surrogate(const std::string& file) {
+  const std::map<std::string, StoredRuns> stored = read_stored_runs(file);
+  fmt::print(
+      "| function | n | plain | surrogate | factor | pycma, plain | pycma, surrogate | factor |\n"
+      "|---|---|---|---|---|---|---|---|\n");
+  for (const Setting& s : make_smooth_settings()) {
+    const auto plain = count_evaluations([&](int seed) { return run_own(s, seed); });
+    const auto surrogate =
+        count_evaluations([&](int seed) { return run_own(s, seed, {"surrogate=quadratic"}); });
+    const auto theirs = stored.find(fmt::format("{},{}", s.function.name, s.dimension));
+    const StoredRuns pycma = theirs == stored.end() ? StoredRuns{} : theirs->second;
+    fmt::print("| {} | {} | {} | {} | {:.1f} | {} | {} | {:.1f} |\n", s.function.name, s.dimension,
+               describe(plain), describe(surrogate), calc_median(plain) / calc_median(surrogate),
+               describe(pycma.plain), describe(pycma.surrogate),
+               calc_median(pycma.plain) / calc_median(pycma.surrogate));
+    std::fflush(stdout);
+  }
+}
+
 void print_speed() {
   Setting s{.function = {"sphere", calc_sphere},
             .dimension = 20,
@@ -480,6 +361,14 @@ void print_speed() {
 int main(int argc, char** argv) {
   if (argc == 3 && std::string_view(argv[1]) == "--integers") {
     print_integers(argv[2]);
+    return 0;
+  }
+  if (argc == 3 && std::string_view(argv[1]) == "--surrogate") {
+    print_surrogate(argv[2]);
+    return 0;
+  }
+  if (argc == 2 && std::string_view(argv[1]) == "--starts") {
+    print_starts();
     return 0;
   }
   print_comparison();

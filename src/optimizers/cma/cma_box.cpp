@@ -66,9 +66,25 @@ double CmaBox::to_coordinate(std::size_t coordinate, double share) const {
 }
 
 std::vector<double> CmaBox::make_start() const {
-  std::vector<double> u;
+  std::vector<double> shares;
   for (std::size_t i = 0; i < dimension(); ++i) {
-    u.push_back(to_coordinate(i, std::clamp(calc_share(i, space_.start()[i]), 0.0, 1.0)));
+    shares.push_back(calc_share(i, space_.start()[i]));
+  }
+  return to_coordinates(shares);
+}
+
+std::vector<double> CmaBox::calc_shares(std::span<const double> point) const {
+  std::vector<double> shares = space_.to_coordinates(point);
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    shares[i] = calc_share(i, shares[i]);
+  }
+  return shares;
+}
+
+std::vector<double> CmaBox::to_coordinates(std::span<const double> shares) const {
+  std::vector<double> u;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    u.push_back(to_coordinate(i, std::clamp(shares[i], 0.0, 1.0)));
   }
   return u;
 }

@@ -39,6 +39,10 @@ class CmaBox {
   double to_coordinate(std::size_t coordinate, double share) const;
   // Returns a decision vector in the box, whose discrete variables have values of their type.
   std::vector<double> to_point(std::span<const double> u) const;
+  // Returns a decision vector's place in the box, as shares of its width, and the u of such shares;
+  // shares outside [0, 1] mean the bounds.
+  std::vector<double> calc_shares(std::span<const double> point) const;
+  std::vector<double> to_coordinates(std::span<const double> shares) const;
   // Returns the cells that contain u, one per coordinate. Those of real variables have no meaning.
   std::vector<CmaCell> calc_cells(std::span<const double> u) const;
 

@@ -161,6 +161,18 @@ const std::vector<std::vector<double>>& CmaDistribution::sample(RandomStream& ra
   return points_;
 }
 
+void CmaDistribution::inject(std::span<const double> point, double most) {
+  State& s = *state_;
+  const Eigen::VectorXd step =
+      (Eigen::Map<const Eigen::VectorXd>(point.data(), s.mean.size()) - s.mean)
+          .cwiseQuotient(sigma_ * s.scales);
+  s.z.col(0) = (s.axes.transpose() * step).cwiseQuotient(s.lengths);
+  s.z.col(0) *= std::min(1.0, most / std::max(s.z.col(0).norm(), 1e-300));
+  s.y.col(0).noalias() = s.axes * s.lengths.cwiseProduct(s.z.col(0));
+  Eigen::Map<Eigen::VectorXd>(points_[0].data(), s.mean.size()) =
+      s.mean + sigma_ * s.scales.cwiseProduct(s.y.col(0));
+}
+
 void CmaDistribution::update(std::span<const std::size_t> ranking) {
   const CmaParameters& p = parameters_;
   assert(ranking.size() == p.population);

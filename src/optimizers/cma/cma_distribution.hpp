@@ -83,6 +83,11 @@ class CmaDistribution {
   // Draws `population` points m + sigma a_i y_i and keeps the y for update(). The scales a_i are 1,
   // except along discrete coordinates (cma_margin.hpp).
   const std::vector<std::vector<double>>& sample(RandomStream& random);
+  // Puts `point` in the place of the first point of the last sample, so that update() learns from
+  // it. A step longer than `most` standard deviations is shortened to that length, because one
+  // that no sample has would make sigma and C grow without limit. Source: Hansen 2011, Injecting
+  // external solutions into CMA-ES (arXiv:1110.4181).
+  void inject(std::span<const double> point, double most);
   // Adapts the distribution. `ranking` holds the indices of all points of the last sample, the best
   // first.
   void update(std::span<const std::size_t> ranking);

@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/random.hpp"
 #include "optimizers/cma/cma_box.hpp"
+#include "optimizers/cma/cma_surrogate.hpp"
 #include "optimizers/cma/cma_uncertainty.hpp"
 #include "optimizers/interface/feasibility.hpp"
 #include "optimizers/interface/scalar_function.hpp"
@@ -55,6 +56,9 @@ class CmaSearch {
     // The start is no sample of the distribution, so it must not enter the update. It is evaluated
     // alone, on the cases of the first generation.
     evaluator_.begin_generation();
+    if (settings_.surrogate) {
+      surrogate_.emplace(box_.dimension(), base);
+    }
     if (!evaluate({box_.make_start()})) {
       return;
     }
@@ -118,6 +122,9 @@ class CmaSearch {
     CmaTermination termination(distribution.parameters(), settings_.tolerances, plan.sigma,
                                discrete_);
     widen_discrete(distribution);
+    if (settings_.surrogate && !is_first_generation_) {
+      surrogate_.emplace(box_.dimension(), plan.population);
+    }
     const std::int64_t first_evaluation = evaluations_;
     while (evaluations_ - first_evaluation < plan.budget) {
       if (evaluator_.stopped()) {
@@ -128,7 +135,13 @@ class CmaSearch {
       }
       is_first_generation_ = false;
       const std::vector<std::vector<double>>& points = distribution.sample(random_);
-      const std::optional<std::vector<double>> values = evaluate(points);
+      if (surrogate_ && surrogate_->is_fitted()) {
+        // About as long as the steps of the samples.
+        const double length = std::sqrt(static_cast<double>(box_.dimension()));
+        distribution.inject(box_.to_coordinates(surrogate_->find_minimum(length)), length);
+      }
+      const std::optional<std::vector<double>> values =
+          surrogate_ ? evaluate_some(points, distribution) : evaluate(points);
       if (!values) {
         return false;
       }
@@ -190,8 +203,11 @@ class CmaSearch {
     }
   }
 
-  // Returns nothing if the evaluator stopped before the last point.
-  std::optional<std::vector<double>> evaluate(const std::vector<std::vector<double>>& points) {
+  // Returns nothing if the evaluator stopped before the last point. The points whose values are not
+  // those of the objective, because they failed or lost a race, get a true in `failed`; the others
+  // become points of the surrogate.
+  std::optional<std::vector<double>> evaluate(const std::vector<std::vector<double>>& points,
+                                              std::vector<bool>* failed = nullptr) {
     std::vector<std::vector<double>> asked;
     asked.reserve(points.size());
     for (const std::vector<double>& point : points) {
@@ -207,10 +223,91 @@ class CmaSearch {
     }
     std::vector<double> values;
     values.reserve(scores.size());
-    for (const Score& score : scores) {
-      values.push_back(calc_merit(evaluator_.problem(), score, settings_.constraint_weight));
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      values.push_back(calc_merit(evaluator_.problem(), scores[i], settings_.constraint_weight));
+      const bool has_failed = scores[i].status != EvaluationStatus::ok;
+      if (failed != nullptr) {
+        failed->push_back(has_failed);
+      }
+      if (surrogate_ && !has_failed) {
+        surrogate_->add(box_.calc_shares(asked[i]), values.back());
+      }
     }
     return values;
+  }
+
+  // Evaluates as many points as it takes until the surrogate orders the last points as the
+  // objective does, those first that it expects to be the best. Returns one value per point; the
+  // points that were not evaluated have values of the surrogate. Returns nothing if the evaluator
+  // stopped before. Source: Hansen 2019, algorithm 1.
+  std::optional<std::vector<double>> evaluate_some(const std::vector<std::vector<double>>& points,
+                                                   const CmaDistribution& distribution) {
+    constexpr double kAgreement = 0.85;
+    constexpr double kLeastShare = 0.02;     // of the points, evaluated in any case
+    constexpr std::size_t kLeastPoints = 4;  // of the model
+    CmaSurrogate& model = *surrogate_;
+    std::vector<std::vector<double>> shares;
+    for (const std::vector<double>& point : points) {
+      shares.push_back(box_.calc_shares(box_.to_point(point)));
+    }
+    struct Evaluated {
+      std::size_t place = 0;
+      double value = 0;
+      bool failed = false;
+    };
+    std::vector<Evaluated> evaluated;
+    std::vector<std::size_t> rest(points.size());
+    std::iota(rest.begin(), rest.end(), std::size_t{0});
+    const std::size_t missing = kLeastPoints - std::min(kLeastPoints, model.size());
+    std::size_t wanted =
+        1 + std::max(missing,
+                     static_cast<std::size_t>(kLeastShare * static_cast<double>(points.size())));
+    std::vector<double> guesses(points.size());
+    while (true) {
+      if (model.is_fitted()) {
+        for (const std::size_t i : rest) {
+          guesses[i] = model.calc_value(shares[i]);
+        }
+        std::ranges::stable_sort(rest, {}, [&](std::size_t i) { return guesses[i]; });
+      }
+      const std::size_t count =
+          std::min(rest.size(), round_up(wanted) - std::min(round_up(wanted), evaluated.size()));
+      std::vector<std::vector<double>> batch;
+      for (std::size_t i = 0; i < count; ++i) {
+        batch.push_back(points[rest[i]]);
+      }
+      std::vector<bool> failed;
+      const std::optional<std::vector<double>> values = evaluate(batch, &failed);
+      if (!values) {
+        return std::nullopt;
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        evaluated.push_back({.place = rest[i], .value = (*values)[i], .failed = failed[i]});
+      }
+      rest.erase(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(count));
+      if (model.size() > 0) {
+        model.fit(distribution);
+      }
+      const bool has_value = !std::ranges::all_of(evaluated, &Evaluated::failed);
+      if (rest.empty() || (has_value && model.is_fitted() &&
+                           model.calc_agreement(evaluated.size()) >= kAgreement)) {
+        break;
+      }
+      wanted = evaluated.size() + (evaluated.size() + 1) / 2;
+    }
+    // Both kinds of values agree at the best point that was evaluated.
+    std::vector<double> all(points.size());
+    const Evaluated* best = nullptr;
+    for (const Evaluated& one : evaluated) {
+      all[one.place] = one.value;
+      if (!one.failed && (best == nullptr || one.value < best->value)) {
+        best = &one;
+      }
+    }
+    for (const std::size_t i : rest) {
+      all[i] = best->value + (model.calc_value(shares[i]) - model.calc_value(shares[best->place]));
+    }
+    return all;
   }
 
   static std::vector<std::size_t> rank(const std::vector<double>& values) {
@@ -270,7 +367,8 @@ class CmaSearch {
   std::int64_t last_large_run_ = 0;
   std::int64_t evaluations_ = 0;
   bool is_first_generation_ = true;
-  std::vector<bool> discrete_;  // one per coordinate
+  std::optional<CmaSurrogate> surrogate_;  // of this run, if asked for
+  std::vector<bool> discrete_;             // one per coordinate
   bool has_discrete_ = false;
 };
 

@@ -3,7 +3,9 @@
 // Tutorial). Each generation samples cma_distribution.hpp in the box of cma_box.hpp. Discrete
 // variables get values of their type, and cma_margin.hpp keeps them from freezing. When
 // cma_termination.hpp reports convergence, the strategy starts again: with larger populations
-// (Auger and Hansen 2005), or with larger and smaller ones alternately (Hansen 2009).
+// (Auger and Hansen 2005), or with larger and smaller ones alternately (Hansen 2009). With a
+// surrogate (cma_surrogate.hpp), only a few points of a generation are evaluated, and the first
+// point of each generation is the minimum of the model.
 #pragma once
 
 #include <cstdint>
@@ -29,6 +31,7 @@ struct CmaSearchSettings {
   CmaRestarts restarts = CmaRestarts::none;
   bool uncertainty_handling = false;  // cma_uncertainty.hpp
   CmaTolerances tolerances;
+  bool surrogate = false;  // cma_surrogate.hpp
   bool feasibility_first =
       false;  // rank by feasibility.hpp; otherwise by calc_merit() with the weight
   double constraint_weight = 0;

@@ -35,12 +35,28 @@ class CmaEs : public Optimizer {
                   .uncertainty_handling = options.get_bool("uncertainty_handling"),
                   .tolerances = {.function = options.get_number("tol_fun"),
                                  .step = options.get_number("tol_x")},
+                  .surrogate = options.get_text("surrogate") == "quadratic",
                   .feasibility_first = options.get_bool("feasibility_first"),
                   .constraint_weight = options.get_number("constraint_weight")} {
     if (settings_.cma.population == 1) {
       throw Error(ErrorKind::usage,
                   "optimizer 'cmaes': option 'population' is 1; it must be 0 (chosen by the number "
                   "of variables) or at least 2");
+    }
+    if (settings_.surrogate && settings_.uncertainty_handling) {
+      throw Error(
+          ErrorKind::usage,
+          "optimizer 'cmaes': option 'surrogate' is quadratic and 'uncertainty_handling' is "
+          "true; the handling compares two values of the points of a generation, and the "
+          "surrogate leaves most of them without one. Use surrogate=none, or "
+          "uncertainty_handling=false");
+    }
+    if (settings_.surrogate && settings_.feasibility_first) {
+      throw Error(ErrorKind::usage,
+                  "optimizer 'cmaes': option 'surrogate' is quadratic and 'feasibility_first' is "
+                  "true; its ranking jumps where a constraint is met, and a quadratic cannot. Use "
+                  "surrogate=none, or feasibility_first=false, which adds the violation to the "
+                  "objective with constraint_weight");
     }
   }
 
@@ -132,6 +148,14 @@ std::vector<OptionSpec> make_option_specs() {
                       "other, and only then the objective counts; constraint_weight has then no "
                       "influence",
        .fallback = false},
+      {.name = "surrogate",
+       .description =
+           "quadratic: a model of all values ranks the points of a generation, and only as many "
+           "are "
+           "evaluated as it takes until the model orders the last points as the objective does; "
+           "evaluates batches of few points, at least batch_multiple",
+       .fallback = std::string("none"),
+       .choices = {"none", "quadratic"}},
   };
 }
 
@@ -147,7 +171,7 @@ std::vector<OptimizerRow> make_cmaes_rows() {
           "Hansen 2009, Benchmarking a BI-population CMA-ES on the BBOB-2009 function testbed; "
           "Hansen et al. 2009, A method for handling uncertainty in evolutionary optimization; "
           "Hamano et al. 2022, CMA-ES with margin: lower-bounding marginal probability for "
-          "mixed-integer black-box optimization",
+          "mixed-integer black-box optimization; Hansen 2019, A global surrogate assisted CMA-ES",
       .capabilities = {.bounds = true,
                        .batch = true,
                        .noisy = true,
