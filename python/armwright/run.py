@@ -152,6 +152,28 @@ class Run:
             self._history = _read_history(self.folder)
         return self._history
 
+    def importance(self, simulations: Optional[int] = None, *, jobs: Optional[int] = None, progress: Show = None) -> dict[str, Any]:
+        """Which variables matter: Sobol indices of a model of the recorded evaluations, near the winner and over the whole run.
+
+        Parameters
+        ----------
+        simulations : int, optional
+            Up to this many test cases of designs around the winner are simulated. Their indices need no model. By default nothing is simulated.
+        jobs, progress : optional
+            As in `optimize`.
+
+        Returns
+        -------
+        dict
+            The output of `armwright show --importance --json`. `parts` has one entry per region, "winner", "run" and "design", with the share
+            of the differences that the model explains (`explained`, cross-validated), what that means (`judgement`), and per variable the
+            indices `first` (alone) and `total` (with others), each with a 95 % interval.
+        """
+        number = None if simulations is None else to_whole("simulations", simulations, 10**9)
+        with Listener(progress) as listener:
+            content: dict[str, Any] = json.loads(_armwright.importance(str(self.folder), number, to_jobs(jobs), listener))
+        return content
+
     @property
     def identification(self) -> Optional[dict[str, Any]]:
         """What identify() found, as identification.json has it; None if the run is of another kind or not finished.

@@ -8,6 +8,7 @@
 #include "base/text.hpp"
 #include "host.hpp"
 #include "parts.hpp"
+#include "study/analysis/importance.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/ask_tell.hpp"
 #include "study/run/run.hpp"
@@ -134,6 +135,23 @@ py::tuple read_history(const std::filesystem::path& folder) {
                         copy_array(clipped));
 }
 
+// Returns the variables that matter as JSON. Without `simulations`, nothing is simulated.
+std::string show_importance(const std::filesystem::path& folder,
+                            std::optional<std::int64_t> simulations, unsigned jobs,
+                            const py::object& listener) {
+  Host host(listener);
+  std::string text;
+  host.run([&] {
+    const LoadedProblem loaded = load_problem_of_run(folder);
+    Importance importance = calc_importance(folder, loaded.problem->description());
+    if (!simulations || add_simulated_importance(folder, *loaded.problem, *simulations, jobs,
+                                                 host.stop(), host, importance)) {
+      text = to_json(importance);
+    }
+  });
+  return text;
+}
+
 }  // namespace
 
 void add_runs(py::module_& module) {
@@ -161,6 +179,10 @@ void add_runs(py::module_& module) {
                tell(folder, own, read_told(line, "tell()", own));
              });
   module.def("load_result", [](const std::string& folder) { return to_json(load_result(folder)); });
+  module.def("importance", [](const std::string& folder, std::optional<std::int64_t> simulations,
+                              unsigned jobs, const py::object& listener) {
+    return show_importance(folder, simulations, jobs, listener);
+  });
   module.def("read_history", [](const std::string& folder) { return read_history(folder); });
 }
 

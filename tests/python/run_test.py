@@ -112,6 +112,17 @@ class RunTest(FolderTest):
                 words = mine.manifest["command_line"]
                 self.run_program(*words[1:], "--quiet")
 
+    def test_importance_is_what_the_program_shows(self):
+        problem = armwright.load_problem("ellipsoid", set={"function.dimension": 3, "function.instance": 0})
+        run = armwright.optimize(problem, "random", budget=300, schedule="fixed:1", out="run")
+        found = run.importance()
+        self.assertEqual(found, json.loads(self.run_program("show", "run", "--importance", "--json")))
+        self.assertEqual([part["region"] for part in found["parts"]], ["winner", "run"])
+        self.assertGreater(found["parts"][1]["variables"][2]["total"]["value"], 0.9)
+        self.assertEqual(run.importance(100)["parts"][0]["region"], "design")
+        with self.assertRaisesRegex(armwright.UsageError, "needs at least 40"):
+            run.importance(39)
+
     def test_options_schedule_and_default_folder(self):
         run = armwright.optimize("q1-complex", "ga", seed=2, budget=70, set=FAST, options={"population": 7, "mutation_probability": 0.25},
                                  schedule="fresh:2", jobs=1)

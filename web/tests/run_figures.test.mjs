@@ -190,6 +190,7 @@ test('what is missing is left out', () => {
     front: null,
     requirements: [],
     failure_reasons: [],
+    importance: null,
     replays: [],
     variables: [],
     training: { ...training, ...empty, incumbents: no_incumbents },
@@ -201,6 +202,21 @@ test('what is missing is left out', () => {
   check({ ...data, training: { ...training, best: nothing, mean: nothing, worst: nothing } });
   const failed = { ...data.test, designs: [{ ...data.test.designs[0], errors: [null, null] }] };
   assert.ok(!check({ ...data, test: failed }).includes('test-errors'));
+});
+
+test('the variables that matter have a figure per region, the largest first', () => {
+  const data = make_run_data();
+  const ids = get_items(data).map((item) => item.id);
+  assert.ok(ids.includes('importance-winner') && ids.includes('importance-run') && ids.includes('importance-notes'));
+  const figure = get_figures(data).find((one) => one.id === 'importance-run');
+  assert.ok(figure.caption.startsWith('A model explains only 31 %'));
+  const { rows } = figure.table({});
+  assert.equal(rows.length, 30);
+  assert.ok(rows.every((row, i) => i === 0 || row[1] <= rows[i - 1][1]));
+  check_svg(draw_svg(figure, kDark, {}, 640, figure.height), figure.id);
+  for (const importance of [null, undefined]) {
+    assert.ok(!get_items({ ...data, importance }).some((item) => item.id.startsWith('importance')));
+  }
 });
 
 test('a repetition without parts leaves them out', () => {

@@ -13,12 +13,15 @@
 #include "cli/commands/commands.hpp"
 #include "cli/terminal/arguments.hpp"
 #include "cli/terminal/format.hpp"
+#include "cli/terminal/progress_bar.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/identification_view.hpp"
+#include "cli/views/importance_view.hpp"
 #include "cli/views/result_view.hpp"
 #include "cli/views/study_view.hpp"
 #include "study/analysis/final_check.hpp"
+#include "study/analysis/importance.hpp"
 #include "study/analysis/study_tables.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/json_values.hpp"
@@ -34,6 +37,7 @@ constexpr const char* kShowExamples = R"(Examples:
   armwright show results/q1-complex-ga-seed1
   armwright show results/q1                        # a study: its tables and verdict
   armwright show results/q1-complex-ga-seed1 --json | jq .winner.test_summary
+  armwright show results/q1-complex-ga-seed1 --importance   # which variables matter
 
 If a run or a study is not complete, the command prints how far it is and how to resume it. It changes nothing.
 'armwright status' shows more about the cells of a study that several processes or machines run.)";
@@ -41,6 +45,9 @@ If a run or a study is not complete, the command prints how far it is and how to
 struct ShowOptions {
   std::string folder;
   bool json = false;
+  bool importance = false;
+  std::string simulations;  // of a design for the importance
+  std::string jobs;
 };
 
 struct UnfinishedRun {
@@ -112,9 +119,43 @@ void show_identification(const std::filesystem::path& folder, const Style& style
   }
 }
 
-int run_show(const ShowOptions& options, const Session& session) {
+int show_importance(const ShowOptions& options, Session& session) {
+  const std::filesystem::path folder = options.folder;
+  const unsigned jobs = parse_jobs(options.jobs);
+  const LoadedProblem loaded = load_problem_of_run(folder);
+  Importance importance = calc_importance(folder, loaded.problem->description());
+  if (!options.simulations.empty()) {
+    const std::int64_t simulations =
+        parse_count("--simulations", options.simulations, 1, 1'000'000'000);
+    catch_signals(session.stop);
+    ProgressBar bar(options.json, importance.objective);
+    const bool has_ended = add_simulated_importance(folder, *loaded.problem, simulations, jobs,
+                                                    session.stop, bar, importance);
+    bar.clear();
+    if (!has_ended) {
+      write_message(describe_stop(session.stop.reason()));
+      return get_stop_code(session.stop.reason());
+    }
+  }
+  write_stdout(options.json
+                   ? to_json(importance)
+                   : describe_importance(importance, make_style(Stream::out, session.color)));
+  return exit_code::kDone;
+}
+
+int run_show(const ShowOptions& options, Session& session) {
+  if (!options.importance && !options.simulations.empty()) {
+    throw Error(ErrorKind::usage,
+                "--simulations is for --importance, which is not given: give both, or neither");
+  }
   const std::filesystem::path folder = options.folder;
   if (is_study_folder(folder)) {
+    if (options.importance) {
+      throw Error(ErrorKind::usage,
+                  sanitize(folder.string()) +
+                      ": is a study; --importance analyses one run, for example that of a cell in "
+                      "its folder 'cells'");
+    }
     return show_study(options, session);
   }
   if (!path_exists(folder / "manifest.json")) {
@@ -124,6 +165,9 @@ int run_show(const ShowOptions& options, const Session& session) {
                     (is_there ? ": is not the folder of a run (it has no manifest.json) or of a "
                                 "study (it has no study.toml)"
                               : ": there is no such folder"));
+  }
+  if (options.importance) {
+    return show_importance(options, session);
   }
   if (path_exists(folder / "result.json")) {
     const RunResult result = load_result(folder);
@@ -171,6 +215,15 @@ void add_show(CLI::App& app, Session& session) {
   CLI::App* command = add_command(
       app, session, "show", "Show the result of a run or a study, or how far it is", kShowExamples);
   command->add_option("FOLDER", options->folder, "The folder of a run or a study")->required();
+  command->add_flag("--importance", options->importance,
+                    "Show which variables matter, near the winner and over the run: Sobol indices "
+                    "of a model of the recorded evaluations");
+  command
+      ->add_option("--simulations", options->simulations,
+                   "Simulate up to N test cases of designs around the winner for --importance, "
+                   "which need no model")
+      ->type_name("N");
+  add_jobs_flag(*command, options->jobs);
   command->add_flag("--json", options->json, "Print as JSON")->group("Output");
   command->callback([options, &session] {
     session.action = [options, &session] { return run_show(*options, session); };

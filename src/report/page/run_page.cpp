@@ -199,6 +199,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
       {"limits", make_limits(run)},
       {"metrics", make_metrics(run)},
       {"failure_reasons", make_failure_reasons(run)},
+      {"importance", make_importance(run)},
       {"record", nullptr},
       {"files", json::array()},
       {"identification", nullptr},

@@ -57,6 +57,9 @@ nlohmann::json make_metrics(const RecordedRun& run);
 // Returns a list of FailureReason: how often training evaluations had no number, by reason, the
 // most frequent first.
 nlohmann::json make_failure_reasons(const RecordedRun& run);
+// Returns Importance: which variables matter (study/analysis/importance.hpp). Null before the end of
+// the run, for an identification, and if the problem cannot be rebuilt.
+nlohmann::json make_importance(const RecordedRun& run);
 // Sets "record" and "files" of the page from the files that the run recorded of its winner. Adds a
 // note for each file that is not shown. Throws Error{bad_data} if a file differs from its checksum.
 void add_winner_record(const RecordedRun& run, nlohmann::json& page,

@@ -1,5 +1,5 @@
 // Makes the parts of a run's page that show its winner without an arm: constraints, metrics, signals
-// and files.
+// and files; and of any run the variables that matter.
 
 #include <fmt/format.h>
 
@@ -13,6 +13,7 @@
 #include "base/text.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/page/run_parts.hpp"
+#include "study/analysis/importance.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run/winner_record.hpp"
 
@@ -107,6 +108,13 @@ json make_failure_reasons(const RecordedRun& run) {
     list.push_back({{"reason", sorted[i].first}, {"count", sorted[i].second}});
   }
   return list;
+}
+
+json make_importance(const RecordedRun& run) {
+  if (!run.result || !run.problem || run.is_identification()) {
+    return nullptr;
+  }
+  return json::parse(to_json(calc_importance(run.folder, run.problem->problem->description())));
 }
 
 void add_winner_record(const RecordedRun& run, json& page, std::vector<std::string>& notes) {

@@ -17,6 +17,7 @@ export interface RunData extends PageBase {
   headline: Headline;
   limits: WinnerLimit[]; // the winner's constraints on the test set; empty without a winner
   metrics: WinnerMetric[]; // the winner's on the test set; empty for an arm
+  importance?: Importance | null; // null before the end of the run; pages of older versions have none
   failure_reasons: FailureReason[]; // of training evaluations, the most frequent first
   record: string | null; // winner-record.csv: signals of the winner on the first test case
   files: WinnerFile[]; // that this case left
@@ -34,6 +35,34 @@ export interface WinnerLimit {
 export interface WinnerMetric {
   quantity: Quantity;
   value: number | null;
+}
+
+// Which variables matter: Sobol indices (src/study/analysis/importance.hpp).
+export interface Importance {
+  objective: Quantity;
+  scale: 'plain' | 'logarithm' | 'ranks';
+  value: string; // the words for what is explained: "the logarithm of mean error"
+  evaluations: number;
+  left_out: number; // evaluations that failed or lost a race
+  parts: ImportancePart[];
+  notes: string[]; // whole sentences
+}
+
+export interface ImportancePart {
+  region: 'run' | 'winner' | 'design';
+  words: string; // "near the winner, within 10 % of each variable's range"
+  half_width: number | null;
+  points: number;
+  explained: number | null; // the share of the variance that the model explains, cross-validated
+  terms: 'linear' | 'squares' | 'products' | null;
+  judgement: string; // a sentence: how far the numbers can be trusted
+  variables: { name: string; first: SobolIndex; total: SobolIndex }[];
+}
+
+export interface SobolIndex {
+  value: number;
+  lower: number; // of the 95 % interval
+  upper: number;
 }
 
 export interface FailureReason {

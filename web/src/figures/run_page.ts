@@ -13,6 +13,7 @@ import {
   make_interval_figure,
   make_parameter_table,
 } from './identification';
+import { make_importance_items } from './importance';
 import { make_joint_figures, make_saturation_table } from './joints';
 import { make_momentary_figure } from './momentary';
 import { make_requirement_table } from './requirement_table';
@@ -107,6 +108,7 @@ export function make_run_tabs(data: RunData): Tab[] {
       items: [
         fitness,
         make_variables_figure(data),
+        ...make_importance_items(data),
         data.front === null ? null : make_front_figure(data.front, data.variables),
         make_reason_table(data),
       ],
