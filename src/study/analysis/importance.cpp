@@ -88,7 +88,7 @@ RecordedPoints read_points(const fs::path& folder, const ProblemDescription& des
 
 // The tail is heavy if the upper half of the middle 90 % is this many times as long as the lower.
 ValueScale choose_scale(std::span<const double> values) {
-  constexpr double kHeavy = 4;
+  constexpr double kHeavy = 10;
   const double low = calc_quantile(values, 0.05);
   const double middle = calc_quantile(values, 0.5);
   const double high = calc_quantile(values, 0.95);
