@@ -1,13 +1,13 @@
 // Which variables of a run matter: one figure per region, headed by how far its numbers can be trusted.
-import { make_number_axis } from '../charts/marks';
-import { make_chart, make_spans, type Part } from '../charts/parts';
+import { make_number_axis, make_plot } from '../charts/marks';
+import { make_spans, type Part } from '../charts/parts';
 import type { Importance, ImportancePart, RunData } from '../data';
 import type { Figure, Item, TextItem, Value } from '../model';
 import { format_number } from '../numbers';
 import { count_of } from './quantities';
 
 const kMostShown = 24; // variables of a figure; the table has all of them
-const kRow_px = 34;
+const kRow_px = 26;
 const kTitles = { run: 'over the whole run', winner: 'near the winner', design: 'by simulations around the winner' };
 
 function make_figure(importance: Importance, part: ImportancePart): Figure {
@@ -25,7 +25,7 @@ function make_figure(importance: Importance, part: ImportancePart): Figure {
     width: 'half',
     height: 110 + kRow_px * shown.length,
     draw: (look) => {
-      // The two indices of a variable lie side by side: a row each above and below the middle of its category.
+      // The first index is an open square over the dot of the total one, so that both show where they are equal.
       const make_parts = (name: 'total' | 'first', s: number): Part[] => {
         const label = `${name} index`;
         return [
@@ -48,7 +48,7 @@ function make_figure(importance: Importance, part: ImportancePart): Figure {
           },
         ];
       };
-      return make_chart(
+      return make_plot(
         look,
         make_number_axis(look, 'x', 'share of the variance', { min: 0, max: 1 }),
         {
