@@ -180,10 +180,10 @@ std::optional<ModelSensitivity> calc_model_sensitivity(std::span<const std::vect
   if (points.size() != values.size()) {
     throw std::invalid_argument("points and values must have the same length");
   }
-  if (points.size() < kFewestPoints) {
+  const std::size_t variables = points.empty() ? 0 : points.front().size();
+  if (points.size() < std::max(kFewestPoints, 2 * (variables + 1))) {
     return std::nullopt;
   }
-  const std::size_t variables = points.front().size();
   Eigen::MatrixXd x(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(variables));
   Eigen::VectorXd y(x.rows());
   for (Eigen::Index row = 0; row < x.rows(); ++row) {

@@ -50,7 +50,8 @@ struct ModelSensitivity {
 // signs (Liu, R. Y. 1988, Bootstrap procedures under some non-i.i.d. models, Annals of Statistics
 // 16). They contain what the points leave open, but not what no polynomial of degree 2 can express.
 //
-// Returns nothing for less than 8 points, or if the values or all variables are constant. Costs
+// Returns nothing for less than 8 points or 2 (n + 1) for n variables, because a choice by few
+// left-out points finds a model for anything, and if the values or all variables are constant. Costs
 // O(p^3 + m p^2) operations for m points and p terms: 0.5 s for 20 variables and 1000 points.
 std::optional<ModelSensitivity> calc_model_sensitivity(std::span<const std::vector<double>> points,
                                                        std::span<const double> values,

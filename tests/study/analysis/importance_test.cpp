@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/expect_error.hpp"
+#include "base/random.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run_support.hpp"
 
@@ -85,14 +86,26 @@ TEST_F(Importances, TooFewSimulationsSayHowManyAreNeeded) {
 }
 
 TEST_F(Importances, AModelThatExplainsTooLittleSaysSo) {
-  RunPlan plan = make_plan("random", 12);
-  // Twelve points cannot tell eight variables apart on a function with many waves.
-  plan.problem = load_problem("rastrigin", std::vector<std::string>{"function.dimension=8"});
-  run(plan, "run");
-  const Importance importance = calc("run");
-  ASSERT_FALSE(importance.parts.empty());
-  EXPECT_LT(*importance.parts.back().explained, kEnoughExplained);
-  EXPECT_THAT(importance.parts.back().judgement, HasSubstr("too little. Do not rely"));
+  // Values that have nothing to do with the variables.
+  ProblemDescription description;
+  description.objectives = {{"f", ""}};
+  description.variables.resize(3, {"x", "", 0, 1, 0.5});
+  JournalContent recorded;
+  Journal journal(Folder::make(temporary_.path(), temporary_.path()), "journal", recorded);
+  RandomStream random("test/importance");
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    EvaluationRecord record;
+    record.index = i;
+    record.x = {random.uniform(), random.uniform(), random.uniform()};
+    record.cases = {CaseRole::training, "train/1", {0}};
+    record.evaluation.objectives = {random.normal()};
+    journal.append(record);
+  }
+  journal.close();
+  const Importance importance = calc_importance(temporary_.path(), description);
+  ASSERT_EQ(importance.parts.size(), 1);
+  EXPECT_LT(*importance.parts[0].explained, kEnoughExplained);
+  EXPECT_THAT(importance.parts[0].judgement, HasSubstr("too little. Do not rely"));
 }
 
 TEST_F(Importances, FewEvaluationsGiveANote) {
