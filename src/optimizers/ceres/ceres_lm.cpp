@@ -4,8 +4,6 @@
 
 #ifdef ARMWRIGHT_WITH_CERES
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -14,7 +12,6 @@
 #include <optional>
 #include <span>
 
-#include "base/error.hpp"
 #include "optimizers/ceres/ceres_support.hpp"
 
 namespace armwright {
@@ -187,14 +184,8 @@ class LevenbergMarquardt : public Optimizer {
   explicit LevenbergMarquardt(const LevenbergSettings& settings) : settings_(settings) {}
 
   void check_problem(const ProblemDescription& problem) const override {
-    if (settings_.exact && !problem.has_jacobian) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("optimizer 'ceres:lm': option derivatives is exact, but problem {} "
-                              "offers no exact derivatives: {}; or use derivatives=differences",
-                              problem.name,
-                              problem.jacobian_advice.empty() ? "only arms on an engine that "
-                                                                "computes them do"
-                                                              : problem.jacobian_advice));
+    if (settings_.exact) {
+      require_jacobian(problem, "ceres:lm", "derivatives is exact", "derivatives=differences");
     }
   }
 

@@ -1,6 +1,10 @@
 #include "optimizers/interface/scalar_function.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "base/error.hpp"
 
 namespace armwright {
 
@@ -13,6 +17,20 @@ OptionSpec make_constraint_weight_option() {
           .fallback = 1000.0,
           .lower = 0,
           .upper = 1e12};
+}
+
+void require_jacobian(const ProblemDescription& problem, std::string_view optimizer,
+                      std::string_view setting, std::string_view instead) {
+  if (!problem.has_jacobian) {
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}': option {}, but problem {} offers no exact "
+                            "derivatives: {}; or use {}",
+                            optimizer, setting, problem.name,
+                            problem.jacobian_advice.empty() ? "only arms on an engine that "
+                                                              "computes them do"
+                                                            : problem.jacobian_advice,
+                            instead));
+  }
 }
 
 double calc_merit(const ProblemDescription& problem, const Score& score, double constraint_weight) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "optimizers/interface/optimizer.hpp"
@@ -21,6 +22,11 @@ struct EvaluatorStopped {};
 // Returns the option for the weight of constraint violations, for optimizers that do not handle
 // constraints.
 OptionSpec make_constraint_weight_option();
+
+// Throws Error{usage} if the problem offers no exact derivatives of its residuals. `setting` says how
+// the user asked for them ("jacobian is true"), and `instead` how not to ask ("jacobian=false").
+void require_jacobian(const ProblemDescription& problem, std::string_view optimizer,
+                      std::string_view setting, std::string_view instead);
 
 // Returns an exact penalty function for optimizers that do not handle constraints (Fletcher 1983,
 // Penalty functions):

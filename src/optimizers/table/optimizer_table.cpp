@@ -12,6 +12,7 @@
 #include "optimizers/builtin/random_search.hpp"
 #include "optimizers/ceres/ceres_backend.hpp"
 #include "optimizers/cma/cma_search.hpp"
+#include "optimizers/dfls/dfls_search.hpp"
 #include "optimizers/nlopt/nlopt_algorithms.hpp"
 #include "optimizers/pagmo/pagmo_backend.hpp"
 #include "optimizers/plugins/plugin_library.hpp"
@@ -64,8 +65,8 @@ const std::vector<OptimizerRow>& optimizer_table() {
   static const std::vector<OptimizerRow> table = [] {
     std::vector<OptimizerRow> rows;
     for (const auto make_rows :
-         {make_ga_rows, make_cmaes_rows, make_ceres_rows, make_nlopt_rows, make_pagmo_rows,
-          make_random_search_rows, make_latin_hypercube_rows}) {
+         {make_ga_rows, make_cmaes_rows, make_dfls_rows, make_ceres_rows, make_nlopt_rows,
+          make_pagmo_rows, make_random_search_rows, make_latin_hypercube_rows}) {
       std::ranges::move(make_rows(), std::back_inserter(rows));
     }
     return rows;
@@ -178,7 +179,8 @@ std::string explain_unsuitable(const OptimizerRow& row, const ProblemDescription
   if (required.residuals && !problem.has_residuals) {
     return "it works on residuals, of whose squares the objective is the sum, and this problem "
            "offers none" +
-           (problem.residuals_advice.empty() ? "" : "; " + problem.residuals_advice);
+           (problem.residuals_advice.empty() ? "; use one that needs none, as cmaes"
+                                             : "; " + problem.residuals_advice);
   }
   return "";
 }
