@@ -209,15 +209,18 @@ VectorXd solve_trust_region(const MatrixXd& jacobian, const VectorXd& residuals,
   }
   double high = 2 * slope / radius;  // |s(lambda)| <= 2 |J'r| / lambda, since the box contains 0
   double lambda = low;
-  constexpr double kAccuracy = 1e-6;  // of the length; the trust region is a rule of thumb
+  // The length ends within this share below the radius. A longer step would have to be shortened,
+  // which takes it off its bounds.
+  constexpr double kAccuracy = 1e-6;
+  const double aim = (1 - kAccuracy / 2) * radius;
   for (int iteration = 0; iteration < 100; ++iteration) {
     const double length = step.norm();
-    if (std::abs(length - radius) <= kAccuracy * radius) {
+    if (std::abs(length - aim) <= radius - aim) {
       break;
     }
-    (length > radius ? low : high) = lambda;
+    (length > aim ? low : high) = lambda;
     const double decline = model.calc_decline();
-    lambda += (length - radius) / radius * length * length / decline;
+    lambda += (length - aim) / aim * length * length / decline;
     if (!(lambda > low && lambda < high)) {
       lambda = std::sqrt(low * high);
     }
