@@ -45,7 +45,7 @@ std::vector<OptimizerRow> make_dfls_rows() {
           {{.name = "radius",
             .description = "of the first trust region, share of the box: how far from the start "
                            "the first points are, one per variable",
-            .fallback = 0.05,
+            .fallback = 0.1,
             .lower = 1e-12,
             .upper = 0.5},
            {.name = "smallest_radius",

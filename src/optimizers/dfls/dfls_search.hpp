@@ -33,7 +33,7 @@ namespace armwright {
 std::vector<OptimizerRow> make_dfls_rows();
 
 struct DflsSettings {
-  double radius = 0.05;           // of the first trust region, share of the box
+  double radius = 0.1;            // of the first trust region, share of the box
   double smallest_radius = 1e-7;  // share of the box
   int restarts = 10;              // at most
   bool exact = false;             // use the problem's derivatives

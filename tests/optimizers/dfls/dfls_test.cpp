@@ -46,7 +46,8 @@ TEST(Dfls, SolvesLinearResidualsInTwoEvaluationsMoreThanVariables) {
 
 TEST(Dfls, StartsWithOneBatch) {
   const ResidualProblem problem(make_box(5, -10, 10, 0), calc_linear_residuals);
-  const MemoryEvaluator evaluator = run_optimizer("dfls", problem, {.budget = 100});
+  const MemoryEvaluator evaluator =
+      run_optimizer("dfls", problem, {.budget = 100}, 1, {"radius=0.05"});
   EXPECT_EQ(evaluator.batch_sizes().front(), 6U);
   EXPECT_EQ(evaluator.trace().front().asked, std::vector<double>(5, 0.0));
   EXPECT_EQ(evaluator.trace()[1].asked, (std::vector<double>{1, 0, 0, 0, 0}));
