@@ -16,7 +16,6 @@
 #include <fstream>
 #include <iostream>
 #include <limits>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
