@@ -42,7 +42,7 @@ std::string format_facts(const OptimizerRow& row, const Style& style, int width)
   if (!row.unavailable.empty()) {
     facts.add_row({"Not available", sanitize(row.unavailable)});
   }
-  const std::vector<std::string> required = list_requirements(row.requirements);
+  const std::vector<std::string> required = list_requirements(row);
   facts.add_row({"Problem", required.empty() ? "any" : "one with " + join(required, " and ")});
   facts.add_row(
       {"Schedules",

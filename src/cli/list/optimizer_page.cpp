@@ -40,7 +40,7 @@ std::string get_backend_name(const OptimizerRow& row) {
 }
 
 std::string format_index_row(const OptimizerRow& row) {
-  std::vector<std::string> needs = list_requirements(row.requirements);
+  std::vector<std::string> needs = list_requirements(row);
   if (!row.backend.empty()) {
     needs.insert(needs.begin(), get_backend_name(row));
   }
@@ -59,7 +59,7 @@ std::string format_facts(const OptimizerRow& row) {
               ? "- **Build:** part of every build.\n"
               : fmt::format("- **Build:** needs {}, which a build has by default.\n",
                             escape_markdown(row.backend));
-  const std::vector<std::string> required = list_requirements(row.requirements);
+  const std::vector<std::string> required = list_requirements(row);
   text += required.empty() ? "- **Problem:** any.\n"
                            : fmt::format("- **Problem:** one with {}.\n",
                                          escape_markdown(join(required, " and ")));
@@ -160,13 +160,20 @@ std::string describe_capability(const OptimizerRow& row, const CapabilityRow& ca
   return has ? capability.with : capability.without;
 }
 
-std::vector<std::string> list_requirements(const Requirements& requirements) {
+std::vector<std::string> list_requirements(const OptimizerRow& row) {
+  const Requirements& requirements = row.requirements;
   std::vector<std::string> list;
   if (requirements.objectives > 1) {
     list.push_back(fmt::format("at least {} objectives", requirements.objectives));
   }
   if (requirements.variables > 1) {
     list.push_back(fmt::format("at least {} decision variables", requirements.variables));
+  }
+  if (row.limits.variables > 0) {
+    list.push_back(fmt::format("at most {} decision variables", row.limits.variables));
+  }
+  if (row.limits.evaluations > 0) {
+    list.push_back(fmt::format("at most {} evaluations", row.limits.evaluations));
   }
   if (requirements.residuals) {
     list.emplace_back("residuals (all robot problems have them)");

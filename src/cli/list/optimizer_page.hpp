@@ -19,7 +19,7 @@ std::vector<std::string> list_capabilities(const Capabilities& capabilities);
 std::string describe_capability(const OptimizerRow& row, const CapabilityRow& capability);
 // Returns what the problem must offer, for example "at least 2 objectives". The list is empty if
 // the optimizer accepts every problem.
-std::vector<std::string> list_requirements(const Requirements& requirements);
+std::vector<std::string> list_requirements(const OptimizerRow& row);
 // Returns in which process the optimizer runs, as the end of a sentence that begins with "it runs".
 std::string describe_isolation(const OptimizerRow& row);
 // Returns "true or false", "integer", "number" or "text".

@@ -45,6 +45,13 @@ struct Requirements {
   bool residuals = false;
 };
 
+// The most that a problem and a run may have for an optimizer; 0: any number.
+struct Limits {
+  int variables = 0;
+  int evaluations = 0;
+  std::string alternative = {};  // an optimizer without these limits
+};
+
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
 
 // One option of an optimizer. The type of `fallback`, its default, is the type of the option.
@@ -122,6 +129,7 @@ struct OptimizerRow {
   std::vector<OptionSpec> options;
   std::function<std::unique_ptr<Optimizer>(const Options& options)> make;
   Requirements requirements = {};
+  Limits limits = {};
   std::string backend = {};  // the library that it needs: "NLopt (CMake option ...)"; empty: none
   // When it runs in a child process (isolation.hpp): "always", "with local=cobyla". Empty: never.
   std::string isolated = {};

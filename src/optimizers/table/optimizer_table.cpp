@@ -19,6 +19,7 @@
 #include "optimizers/plugins/plugin_process.hpp"
 #include "optimizers/plugins/recorded_optimizer.hpp"
 #include "optimizers/table/multistart.hpp"
+#include "optimizers/turbo/turbo.hpp"
 #include "process/command_words.hpp"
 
 namespace armwright {
@@ -65,7 +66,7 @@ const std::vector<OptimizerRow>& optimizer_table() {
   static const std::vector<OptimizerRow> table = [] {
     std::vector<OptimizerRow> rows;
     for (const auto make_rows :
-         {make_ga_rows, make_cmaes_rows, make_dfls_rows, make_ceres_rows, make_nlopt_rows,
+         {make_ga_rows, make_cmaes_rows, make_dfls_rows, make_turbo_rows, make_ceres_rows, make_nlopt_rows,
           make_pagmo_rows, make_random_search_rows, make_latin_hypercube_rows}) {
       std::ranges::move(make_rows(), std::back_inserter(rows));
     }
@@ -162,6 +163,10 @@ std::string explain_unsuitable(const OptimizerRow& row, const ProblemDescription
   if (std::ssize(problem.variables) < required.variables) {
     return fmt::format("it needs a problem of at least {} decision variables, and this one has {}",
                        required.variables, problem.variables.size());
+  }
+  if (row.limits.variables > 0 && std::ssize(problem.variables) > row.limits.variables) {
+    return fmt::format("it is made for at most {} decision variables, and this one has {}; use {}",
+                       row.limits.variables, problem.variables.size(), row.limits.alternative);
   }
   if (required.residuals && !problem.has_residuals && !problem.constraints.empty()) {
     std::vector<std::string> able;

@@ -1,14 +1,17 @@
 // Analytic test functions: optimization problems with a known minimiser that cost almost nothing to
 // evaluate. They show whether an optimizer works before it is used on a robot.
 //
-// Every function is a sum over z, i = 1..n, with the minimum 0 at z = 0:
+// These functions are sums over z, i = 1..n, with the minimum 0 at z = 0:
 //   sphere      sum z_i^2
 //   ellipsoid   sum 10^(6 (i-1)/(n-1)) z_i^2, condition number 10^6 (n = 1: the sphere)
 //   rosenbrock  sum_{i<n} 100 (y_{i+1} - y_i^2)^2 + (1 - y_i)^2 with y = z + 1
 //   rastrigin   sum z_i^2 + 10 (1 - cos(2 pi z_i)), a local minimum near every integer point
-// and with four variables
-//   constrained the Rosen-Suzuki problem: convex, three inequality constraints (two active),
-//               minimum -44 at (0, 1, 2, -1)
+//   ackley      20 (1 - exp(-0.2 sqrt(sum z_i^2 / n))) + e - exp(sum cos(2 pi z_i) / n)
+// and in a fixed dimension, without a shift
+//   branin      two variables, three minima with the value 10 / (8 pi)
+//   hartmann6   six variables, minimum -3.322368011415515
+//   constrained the Rosen-Suzuki problem with four variables: convex, three inequality constraints
+//               (two active), minimum -44 at (0, 1, 2, -1)
 // The functions sphere-int and ellipsoid-int are sphere and ellipsoid with whole numbers as the
 // second half of the variables (floor(n/2) of them). Source: Hamano, Saito, Nomura and Shirakawa
 // 2022, CMA-ES with Margin, SphereInt and EllipsoidInt.
@@ -22,7 +25,7 @@
 // shift is a whole number: that of the plain form is rounded away from 0, the random one to the
 // nearest. Functions with integer variables are not rotated.
 //
-// All functions but `constrained` are sums of squares and have residuals. Rosenbrock has two
+// sphere, ellipsoid, rosenbrock and rastrigin are sums of squares and have residuals. Rosenbrock has two
 // residuals per pair of neighbouring variables: 10 (y_{i+1} - y_i^2) and 1 - y_i. Rastrigin has two
 // residuals per variable: z_i and sqrt(20) sin(pi z_i). A BBOB function whose value includes f_opt
 // is no sum of squares and has no residuals.

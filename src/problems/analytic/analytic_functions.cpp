@@ -1,6 +1,7 @@
 // The formulas of the analytic functions over z, and the table of all functions.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -86,6 +87,48 @@ std::vector<double> calc_rastrigin_residuals(Point z) {
     residuals.push_back(std::sqrt(20.0) * std::sin(std::numbers::pi * zi));
   }
   return residuals;
+}
+
+double calc_ackley(Point z) {
+  const auto n = static_cast<double>(z.size());
+  double cosines = 0;
+  for (const double zi : z) {
+    cosines += std::cos(2 * std::numbers::pi * zi);
+  }
+  // At z = 0 both terms are exactly 0.
+  return 20 * (1 - std::exp(-0.2 * std::sqrt(calc_sphere(z) / n))) +
+         (std::exp(1.0) - std::exp(cosines / n));
+}
+
+// The second variable of the source lies in [0, 15]. Here it is smaller by 5, so that both have the
+// same bounds.
+double calc_branin(Point x) {
+  constexpr double kPi = std::numbers::pi;
+  const double bend = x[1] + 5 - 5.1 / (4 * kPi * kPi) * x[0] * x[0] + 5 / kPi * x[0] - 6;
+  return bend * bend + 10 * (1 - 1 / (8 * kPi)) * std::cos(x[0]) + 10;
+}
+
+double calc_hartmann6(Point x) {
+  constexpr std::array<double, 4> kHeights = {1, 1.2, 3, 3.2};
+  constexpr std::array<std::array<double, 6>, 4> kSharpness = {{{10, 3, 17, 3.5, 1.7, 8},
+                                                                {0.05, 10, 17, 0.1, 8, 14},
+                                                                {3, 3.5, 1.7, 10, 17, 8},
+                                                                {17, 8, 0.05, 10, 0.1, 14}}};
+  constexpr std::array<std::array<double, 6>, 4> kCentres = {
+      {{0.1312, 0.1696, 0.5569, 0.0124, 0.8283, 0.5886},
+       {0.2329, 0.4135, 0.8307, 0.3736, 0.1004, 0.9991},
+       {0.2348, 0.1451, 0.3522, 0.2883, 0.3047, 0.6650},
+       {0.4047, 0.8828, 0.8732, 0.5743, 0.1091, 0.0381}}};
+  double sum = 0;
+  for (std::size_t k = 0; k < kHeights.size(); ++k) {
+    double distance = 0;
+    for (std::size_t i = 0; i < kCentres[k].size(); ++i) {
+      const double difference = x[i] - kCentres[k][i];
+      distance += kSharpness[k][i] * difference * difference;
+    }
+    sum -= kHeights[k] * std::exp(-distance);
+  }
+  return sum;
 }
 
 double calc_rosen_suzuki(Point x) {
@@ -190,6 +233,45 @@ const std::vector<AnalyticFunction>& analytic_table() {
        .is_rotated = true,
        .calc_value = calc_rastrigin,
        .calc_residuals = calc_rastrigin_residuals},
+      {.name = "ackley",
+       .summary = "A nearly flat plain with many small dents around one deep hole",
+       .source = "Ackley 1987, A connectionist machine for genetic hillclimbing; Baeck 1996 for n "
+                 "variables",
+       .lower = -32.768,
+       .upper = 32.768,
+       .start = {-20},
+       .has_instances = true,
+       .is_rotated = true,
+       .calc_value = calc_ackley},
+      {.name = "branin",
+       .summary = "Two variables, three equal minima",
+       .source = "Branin 1972, Widely convergent method for finding multiple solutions of "
+                 "simultaneous nonlinear equations; Dixon and Szego 1978, The global optimization "
+                 "problem: an introduction (its second variable is x_2 + 5)",
+       .smallest_dimension = 2,
+       .largest_dimension = 2,
+       .default_dimension = 2,
+       .lower = -5,
+       .upper = 10,
+       .start = {6},
+       .minimiser = {std::numbers::pi, 2.275 - 5},  // where the square is 0 and the cosine is -1
+       .minimum = 10 / (8 * std::numbers::pi),
+       .calc_value = calc_branin},
+      {.name = "hartmann6",
+       .summary = "Six variables, a sum of four bells with six local minima",
+       .source = "Hartman 1973, Some experiments in global optimization; Dixon and Szego 1978, The "
+                 "global optimization problem: an introduction",
+       .smallest_dimension = 6,
+       .largest_dimension = 6,
+       .default_dimension = 6,
+       .lower = 0,
+       .upper = 1,
+       .start = {0.5},
+       // By Newton's method from the published minimiser, until the gradient was below 1e-14.
+       .minimiser = {0.20168951100670543, 0.15001069182345797, 0.476873974221897,
+                     0.2753324304940561, 0.31165161660011326, 0.6573005340656204},
+       .minimum = -3.322368011415515,
+       .calc_value = calc_hartmann6},
       {.name = "constrained",
        .summary = "Rosen-Suzuki: a convex quadratic under three quadratic constraints",
        .source = "Rosen and Suzuki 1965, Construction of nonlinear programming test "

@@ -2,6 +2,8 @@
 // For use inside the suite and by tests; its interface is contract.hpp.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -20,6 +22,13 @@ std::vector<std::shared_ptr<const Problem>> make_contract_problems(const Optimiz
 // The reference point of hypervolumes: at least as large as every objective of zdt1.
 inline constexpr double kLargestObjective = 11;
 
+// Returns the budget with which a check runs the optimizer. Every evaluation costs much time if the
+// optimizer has a limit of evaluations; a tenth of the limit is then enough.
+inline std::int64_t limit_budget(const OptimizerRow& row, std::int64_t budget) {
+  const std::int64_t most = row.limits.evaluations / 10;
+  return most > 0 ? std::min(budget, most) : budget;
+}
+
 // One optimizer on one problem.
 struct ContractTrial {
   const OptimizerRow& row;
@@ -28,6 +37,7 @@ struct ContractTrial {
 
   // Returns an evaluator that gives the optimizer the variables as it can treat them.
   MemoryEvaluator make_evaluator(MemoryEvaluatorSettings settings) const {
+    settings.budget = limit_budget(row, settings.budget);
     settings.capabilities = row.capabilities;
     return {problem, settings};
   }

@@ -84,7 +84,7 @@ ContractFinding check_learning(const OptimizerRow& row, const Options& options) 
   if (row.capabilities.sampling) {
     return make_exempt("it samples, and does not learn");
   }
-  constexpr std::int64_t kBudget = 5000;
+  const std::int64_t budget = limit_budget(row, 5000);
   const OptimizerRow& random = find_optimizer("random");
   const Options random_options = Options::parse(random.name, random.options, {});
   const bool many = row.requirements.objectives > 1;
@@ -97,13 +97,13 @@ ContractFinding check_learning(const OptimizerRow& row, const Options& options) 
       continue;
     }
     ++contests;
-    const double own = calc_median_success({row, options, *problem}, kBudget);
-    const double chance = calc_median_success({random, random_options, *problem}, kBudget);
+    const double own = calc_median_success({row, options, *problem}, budget);
+    const double chance = calc_median_success({random, random_options, *problem}, budget);
     if (own <= chance) {
       return make_broken(
           fmt::format("on {}: no better than random search ({} against {}, {} "
                       "evaluations, median of 5 seeds)",
-                      name, many ? own : -own, many ? chance : -chance, kBudget));
+                      name, many ? own : -own, many ? chance : -chance, budget));
     }
   }
   return contests > 0 ? ContractFinding{} : make_broken("no function suits it");
@@ -114,19 +114,19 @@ ContractFinding check_constraints(const OptimizerRow& row, const Options& option
   if (!row.capabilities.constraints && !weighs) {
     return make_exempt("it declares neither 'constraints' nor an option constraint_weight");
   }
-  constexpr std::int64_t kBudget = 2000;
+  const std::int64_t budget = limit_budget(row, 2000);
   // The start is feasible and has 38.75; most optimizers come within 1 % of the optimum, -44.
   constexpr double kWorst = -10;
   for (const auto& problem : make_contract_problems(row)) {
     if (problem->description().constraints.empty()) {
       continue;
     }
-    const double best = -calc_median_success({row, options, *problem}, kBudget);
+    const double best = -calc_median_success({row, options, *problem}, budget);
     if (!(best <= kWorst)) {
       return make_broken(fmt::format(
           "on {}: its best feasible value is {} ({} evaluations, median of 5 seeds), and "
           "{} is easily reached",
-          problem->description().name, best, kBudget, kWorst));
+          problem->description().name, best, budget, kWorst));
     }
   }
   return {};

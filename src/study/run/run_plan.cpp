@@ -87,6 +87,15 @@ void check_plan(const RunPlan& plan) {
     throw Error(ErrorKind::usage, fmt::format("optimizer '{}' cannot work on {}: {}", row.name,
                                               plan.problem.name, unsuitable));
   }
+  const std::int64_t evaluations = plan.budget / std::max(plan.schedule.cases, 1);
+  if (row.limits.evaluations > 0 && evaluations > row.limits.evaluations) {
+    throw Error(ErrorKind::usage,
+                fmt::format("optimizer '{}' is made for at most {} evaluations, and a budget of {} "
+                            "with schedule {} has {}; use --budget {}, or --optimizer {}",
+                            row.name, row.limits.evaluations, plan.budget, to_text(plan.schedule),
+                            evaluations, row.limits.evaluations * plan.schedule.cases,
+                            row.limits.alternative));
+  }
   if (plan.schedule.changes_cases() && !row.capabilities.generations) {
     throw Error(ErrorKind::usage,
                 fmt::format("optimizer '{}' has no generations, so training cases that change "
