@@ -44,6 +44,10 @@ std::string format_facts(const OptimizerRow& row, const Style& style, int width)
   }
   const std::vector<std::string> required = list_requirements(row);
   facts.add_row({"Problem", required.empty() ? "any" : "one with " + join(required, " and ")});
+  if (row.limits.evaluations > 0) {
+    facts.add_row({"Budget", fmt::format("at most {} evaluations; for more use {}",
+                                         row.limits.evaluations, row.limits.alternative)});
+  }
   facts.add_row(
       {"Schedules",
        row.capabilities.generations
@@ -117,20 +121,22 @@ json to_json(const OptimizerRow& row) {
   for (const CapabilityRow& capability : kCapabilityTable) {
     capabilities[capability.name] = row.capabilities.*capability.member;
   }
-  return {{"name", row.name},
-          {"summary", row.summary},
-          {"source", row.source},
-          {"unavailable", row.unavailable},
-          {"library", row.backend},
-          {"isolated", row.isolated},
-          {"capabilities", capabilities},
-          {"tuned_on", row.tuned_on},
-          {"tuning", row.tuning},
-          {"requirements",
-           {{"objectives", row.requirements.objectives},
-            {"variables", row.requirements.variables},
-            {"residuals", row.requirements.residuals}}},
-          {"options", options}};
+  return {
+      {"name", row.name},
+      {"summary", row.summary},
+      {"source", row.source},
+      {"unavailable", row.unavailable},
+      {"library", row.backend},
+      {"isolated", row.isolated},
+      {"capabilities", capabilities},
+      {"tuned_on", row.tuned_on},
+      {"tuning", row.tuning},
+      {"requirements",
+       {{"objectives", row.requirements.objectives},
+        {"variables", row.requirements.variables},
+        {"residuals", row.requirements.residuals}}},
+      {"limits", {{"variables", row.limits.variables}, {"evaluations", row.limits.evaluations}}},
+      {"options", options}};
 }
 
 json list_optimizers_as_json() {

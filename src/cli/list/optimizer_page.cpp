@@ -63,6 +63,10 @@ std::string format_facts(const OptimizerRow& row) {
   text += required.empty() ? "- **Problem:** any.\n"
                            : fmt::format("- **Problem:** one with {}.\n",
                                          escape_markdown(join(required, " and ")));
+  if (row.limits.evaluations > 0) {
+    text += fmt::format("- **Budget:** at most {} evaluations; for more use `{}`.\n",
+                        row.limits.evaluations, row.limits.alternative);
+  }
   text += fmt::format("- **Runs:** {}\n", format_sentence(describe_isolation(row)));
   if (!row.tuned_on.empty()) {
     std::vector<std::string> problems;
@@ -171,9 +175,6 @@ std::vector<std::string> list_requirements(const OptimizerRow& row) {
   }
   if (row.limits.variables > 0) {
     list.push_back(fmt::format("at most {} decision variables", row.limits.variables));
-  }
-  if (row.limits.evaluations > 0) {
-    list.push_back(fmt::format("at most {} evaluations", row.limits.evaluations));
   }
   if (requirements.residuals) {
     list.emplace_back("residuals (all robot problems have them)");

@@ -66,8 +66,8 @@ const std::vector<OptimizerRow>& optimizer_table() {
   static const std::vector<OptimizerRow> table = [] {
     std::vector<OptimizerRow> rows;
     for (const auto make_rows :
-         {make_ga_rows, make_cmaes_rows, make_dfls_rows, make_turbo_rows, make_ceres_rows, make_nlopt_rows,
-          make_pagmo_rows, make_random_search_rows, make_latin_hypercube_rows}) {
+         {make_ga_rows, make_cmaes_rows, make_dfls_rows, make_turbo_rows, make_ceres_rows,
+          make_nlopt_rows, make_pagmo_rows, make_random_search_rows, make_latin_hypercube_rows}) {
       std::ranges::move(make_rows(), std::back_inserter(rows));
     }
     return rows;

@@ -90,7 +90,7 @@ const Setting<int> kFunctionDimension{
      .upper = static_cast<double>(AnalyticFunction{}.largest_dimension)},
     AnalyticFunction{}.default_dimension,
     "for the kind analytic: number of variables (rosenbrock, sphere-int and ellipsoid-int: at "
-    "least 2; constrained: 4; bbob-f1 to bbob-f15: 2 to 40)"};
+    "least 2; branin: 2; hartmann6: 6; constrained: 4; bbob-f1 to bbob-f15: 2 to 40)"};
 const Setting<int> kFunctionInstance{
     "instance",
     {.lower = 0, .upper = kMostInstances},

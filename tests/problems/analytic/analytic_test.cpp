@@ -31,12 +31,13 @@ std::vector<double> shifted(const Problem& problem, double by) {
 
 TEST(Analytic, NamesAndDimensionsAreChecked) {
   EXPECT_THAT(analytic_names(),
-              ElementsAre("sphere", "ellipsoid", "rosenbrock", "rastrigin", "constrained",
-                          "sphere-int", "ellipsoid-int", "bbob-f1", "bbob-f2", "bbob-f3", "bbob-f8",
-                          "bbob-f10", "bbob-f15"));
+              ElementsAre("sphere", "ellipsoid", "rosenbrock", "rastrigin", "ackley", "branin",
+                          "hartmann6", "constrained", "sphere-int", "ellipsoid-int", "bbob-f1",
+                          "bbob-f2", "bbob-f3", "bbob-f8", "bbob-f10", "bbob-f15"));
   EXPECT_EQ(usage_error_of([] { make_analytic("spere", 3); }),
             "unknown analytic function 'spere'; did you mean 'sphere'? Valid: sphere, ellipsoid, "
-            "rosenbrock, rastrigin, constrained, sphere-int, ellipsoid-int, bbob-f1, bbob-f2, "
+            "rosenbrock, rastrigin, ackley, branin, hartmann6, constrained, sphere-int, "
+            "ellipsoid-int, bbob-f1, bbob-f2, "
             "bbob-f3, bbob-f8, bbob-f10, bbob-f15");
   EXPECT_EQ(usage_error_of([] { make_analytic("sphere", 0); }),
             "analytic function 'sphere': dimension is 0; it must be between 1 and 1000");
@@ -64,6 +65,21 @@ TEST(Analytic, HandComputedValues) {
   EXPECT_NEAR(
       calc_value(*make_analytic("rastrigin", 3), shifted(*make_analytic("rastrigin", 3), 0.5)),
       60.75, 1e-12);
+  // z = 1, all cosines are 1: 20 (1 - exp(-0.2)), up to the rounding of x times the slope, below 5.
+  EXPECT_NEAR(calc_value(*make_analytic("ackley", 3), shifted(*make_analytic("ackley", 3), 1)),
+              20 * (1 - std::exp(-0.2)), 1e-13);
+  // The square is 2 + 5 - 6 = 1, and the cosine is 1: 1 + 20 - 10 / (8 pi)
+  EXPECT_NEAR(calc_value(*make_analytic("branin"), {0, 2}), 21 - 10 / (8 * std::acos(-1.0)), 1e-13);
+  // Its two other minima, in the coordinates with x_2 smaller by 5: b = 5.1 x^2 / (4 pi^2) - 5 x /
+  // pi + 6 at -pi and 3 pi, where the cosine is -1 too.
+  const double pi = std::acos(-1.0);
+  EXPECT_NEAR(calc_value(*make_analytic("branin"), {-pi, 1.275 + 5 + 6 - 5}), 10 / (8 * pi), 1e-13);
+  EXPECT_NEAR(calc_value(*make_analytic("branin"), {3 * pi, 11.475 - 15 + 6 - 5}), 10 / (8 * pi),
+              1e-13);
+  // The minimum that Dixon and Szego 1978 publish, with six digits.
+  EXPECT_NEAR(calc_value(*make_analytic("hartmann6"),
+                         {0.20169, 0.150011, 0.476874, 0.275332, 0.311652, 0.6573}),
+              -3.32237, 1e-5);
   // x = (1, 1, 1, 1): 1 + 1 + 2 + 1 - 5 - 5 - 21 + 7; the third constraint 2 + 1 + 1 + 2 - 1 - 1 -
   // 5; all numbers exact
   const Evaluation constrained =
@@ -206,7 +222,8 @@ TEST_P(AnalyticTable, TheObjectiveIsTheSumOfTheSquaredResiduals) {
   const auto problem = make_analytic(GetParam());
   const ProblemDescription& description = problem->description();
   const bool has_f_opt = GetParam().starts_with("bbob");
-  EXPECT_EQ(description.has_residuals, GetParam() != "constrained" && !has_f_opt);
+  const std::vector<std::string> no_sums = {"ackley", "branin", "hartmann6", "constrained"};
+  EXPECT_EQ(description.has_residuals, std::ranges::count(no_sums, GetParam()) == 0 && !has_f_opt);
   RandomStream random("test/analytic/residuals/" + GetParam());
   for (int sample = 0; sample < 100; ++sample) {
     std::vector<double> x;

@@ -10,8 +10,9 @@ namespace armwright {
 namespace {
 
 constexpr const char* kProblems =
-    "bbob-f1, bbob-f10, bbob-f15, bbob-f2, bbob-f3, bbob-f8, co-design, constrained, ellipsoid, "
-    "ellipsoid-int, excite, faithful-e6, faithful-q1, faithful-q3, identify, initial, "
+    "ackley, bbob-f1, bbob-f10, bbob-f15, bbob-f2, bbob-f3, bbob-f8, branin, co-design, "
+    "constrained, ellipsoid, "
+    "ellipsoid-int, excite, faithful-e6, faithful-q1, faithful-q3, hartmann6, identify, initial, "
     "initial-0cm, initial-45cm, initial-90cm, q1-complex, q1-ramp, q1-requirements, q1-step, "
     "q1-trapezoid, q1-triangular, q2-e1, q2-e2, q2-e3, q2-e4, q2-e5, q2-e6, q2-energy, q2-error, "
     "q2-pareto, "
