@@ -137,10 +137,6 @@ GaussianProcess::GaussianProcess(std::vector<std::size_t> feature_variables)
   }
 }
 
-double GaussianProcess::noise_share() const {
-  return 1 / (1 + std::exp(hyperparameters_[variables_] - hyperparameters_[variables_ + 1]));
-}
-
 VectorXd GaussianProcess::calc_inverse_lengths(const Hyperparameters& at) const {
   VectorXd inverse(static_cast<Index>(feature_variables_.size()));
   for (Index f = 0; f < inverse.size(); ++f) {

@@ -52,8 +52,6 @@ class GaussianProcess {
 
   const Hyperparameters& hyperparameters() const { return hyperparameters_; }
   void set_hyperparameters(const Hyperparameters& values) { hyperparameters_ = values; }
-  // Returns the noise's share of the whole variance.
-  double noise_share() const;
 
   // Returns the logarithm of the marginal likelihood of the values times the priors, up to a
   // constant, and writes its gradient. Returns minus infinity where the covariance has no Cholesky

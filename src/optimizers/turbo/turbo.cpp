@@ -58,9 +58,6 @@ class Turbo : public Optimizer {
           return;
         }
         region.add_batch(places, found);
-        if (region.is_noisy()) {
-          evaluator.recommend(box.to_point(region.centre()));
-        }
       }
     }
   }
@@ -88,7 +85,6 @@ std::vector<OptimizerRow> make_turbo_rows() {
       .capabilities = {.bounds = true,
                        .constraints = true,
                        .batch = true,
-                       .noisy = true,
                        .stochastic = true,
                        .integer = true,
                        .categorical = true},

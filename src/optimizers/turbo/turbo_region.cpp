@@ -25,9 +25,6 @@ constexpr double kLeastImprovement = 1e-3;
 constexpr Index kMostFitted = 500;
 constexpr int kFitSteps = 20;
 
-// Above this share of noise the best observed value is a matter of luck.
-constexpr double kNoticeableNoise = 1e-3;
-
 // Two places at a smaller distance count as one.
 constexpr double kSamePlace = 1e-9;
 
@@ -59,10 +56,6 @@ TurboRegion::TurboRegion(const TurboBox& box, const ProblemDescription& problem,
 
 bool TurboRegion::has_converged() const {
   return length_ < kShortest;
-}
-
-bool TurboRegion::is_noisy() const {
-  return objective_.noise_share() > kNoticeableNoise;
 }
 
 void TurboRegion::begin(const MatrixXd& places, std::span<const Score> scores) {
@@ -175,18 +168,8 @@ void TurboRegion::fit_processes() {
   }
 }
 
-void TurboRegion::choose_centre() {
-  std::size_t best = find_best();
-  if (is_noisy()) {
-    std::vector<Fitness> smoothed = fitness_;
-    const VectorXd means = objective_.mean().calc_values(box_.calc_features(places_));
-    for (std::size_t k = 0; k < smoothed.size(); ++k) {
-      smoothed[k].objective = means[static_cast<Index>(k)];
-    }
-    best =
-        static_cast<std::size_t>(std::ranges::min_element(smoothed, is_fitter) - smoothed.begin());
-  }
-  centre_ = places_.col(static_cast<Index>(best));
+void TurboRegion::place_box() {
+  centre_ = places_.col(static_cast<Index>(find_best()));
   weights_ = objective_.hyperparameters().head(n_);
   weights_ = (weights_.array() - weights_.mean()).exp();
   lower_.resize(n_);
@@ -326,7 +309,7 @@ bool TurboRegion::is_known(const MatrixXd& batch, Index place) const {
 MatrixXd TurboRegion::choose(Index batch, RandomStream& random) {
   constexpr int kTries = 100;
   fit_processes();
-  choose_centre();
+  place_box();
   MatrixXd chosen(n_, batch);
   for (Index k = 0; k < batch; ++k) {
     Draw draw{.objective = objective_.draw_sample(random), .constraints = {}};

@@ -13,8 +13,7 @@
 // violation is chosen. Source: Eriksson, Pearce, Gardner, Turner and Poloczek 2019, Scalable global
 // optimization via local Bayesian optimization; Eriksson and Poloczek 2021, Scalable constrained
 // Bayesian optimization. Deviations: the best candidates are moved to the local minima of the sample
-// (box_descent.hpp), so that the precision does not end at the distance of the candidates; and if
-// the process finds noise, the centre is the place with the smallest posterior mean.
+// (box_descent.hpp), so that the precision does not end at the distance of the candidates.
 #pragma once
 
 #include <Eigen/Core>
@@ -43,11 +42,6 @@ class TurboRegion {
   // evaluated, unless the values of discrete variables leave no other.
   Eigen::MatrixXd choose(Eigen::Index batch, RandomStream& random);
 
-  // Returns the place around which the last batch was chosen.
-  const Eigen::VectorXd& centre() const { return centre_; }
-  // Returns whether the objective's process has found noise.
-  bool is_noisy() const;
-
  private:
   // One sample of the objective, and one per constraint.
   struct Draw {
@@ -61,7 +55,7 @@ class TurboRegion {
   Eigen::VectorXd make_objective_values() const;
   Eigen::VectorXd make_constraint_values(std::size_t constraint) const;
   void fit_processes();
-  void choose_centre();
+  void place_box();
   Eigen::MatrixXd draw_candidates(RandomStream& random) const;
   Eigen::VectorXd minimise(const Draw& draw, RandomStream& random) const;
   bool is_known(const Eigen::MatrixXd& batch, Eigen::Index place) const;

@@ -14,8 +14,6 @@
 namespace armwright {
 namespace {
 
-using testing::HasSubstr;
-
 // The median of five seeds, of what is left to the optimum.
 double calc_median_gap(const Problem& problem, std::int64_t budget,
                        const std::vector<std::string>& options = {}) {
@@ -81,23 +79,7 @@ TEST(Turbo, APenaltyDoesNotHideTheShapeOfTheRest) {
   EXPECT_LT(evaluator.best().value_or(1e300) - *problem->description().optimum, 0.01);
 }
 
-TEST(Turbo, RecommendsPlacesWhereValuesAreNoisy) {
-  // Noise of the deviation 0.5 around a bowl; the same place has the same value.
-  std::vector<DecisionVariable> variables(2, {"x", "", -1, 1, 0.9, Scale::linear});
-  const FunctionProblem noisy(variables, [](std::span<const double> x, std::uint64_t) {
-    return 4 * (x[0] * x[0] + x[1] * x[1]) + 0.7 * std::sin(1e6 * x[0] + 1e5 * x[1]);
-  });
-  const MemoryEvaluator evaluator = run_optimizer("turbo", noisy, {.budget = 60});
-  ASSERT_FALSE(evaluator.recommended().empty());
-  const std::vector<double>& last = evaluator.recommended().back();
-  EXPECT_LT(last[0] * last[0] + last[1] * last[1], 0.1);
-  const FunctionProblem exact(variables, [](std::span<const double> x, std::uint64_t) {
-    return x[0] * x[0] + x[1] * x[1];
-  });
-  EXPECT_THAT(run_optimizer("turbo", exact, {.budget = 60}).recommended(), testing::IsEmpty());
-}
-
-TEST(Turbo, EndsByItselfAtItsLimitOnAProblemWithFewPoints) {
+TEST(Turbo, GoesOnWhereEveryPointIsKnown) {
   const std::vector<DecisionVariable> variables = {
       {"n", "", 0, 4, 0, Scale::linear, VariableType::integer}};
   const FunctionProblem problem(
