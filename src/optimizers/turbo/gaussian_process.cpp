@@ -175,10 +175,13 @@ MatrixXd GaussianProcess::calc_covariance(const MatrixXd& scaled) const {
 
 void GaussianProcess::factorise() {
   constexpr double kMoreNoise = 10;
+  constexpr double kLeastAdded = 1e-12;  // of the variance, far above the rounding errors
   const MatrixXd scaled = calc_inverse_lengths(hyperparameters_).asDiagonal() * features_;
   Eigen::LLT<MatrixXd> decomposition(calc_covariance(scaled));
   while (decomposition.info() != Eigen::Success) {
-    hyperparameters_[variables_ + 1] += std::log(kMoreNoise);
+    hyperparameters_[variables_ + 1] =
+        std::max(hyperparameters_[variables_ + 1] + std::log(kMoreNoise),
+                 hyperparameters_[variables_] + std::log(kLeastAdded));
     decomposition.compute(calc_covariance(scaled));
   }
   factor_ = decomposition.matrixL();
@@ -258,20 +261,25 @@ double GaussianProcess::calc_log_posterior(const MatrixXd& features, const Vecto
 }
 
 void GaussianProcess::fit(const MatrixXd& features, const VectorXd& values, int iterations) {
+  constexpr double kNoisyStart = 0.1;
   const std::vector<Prior> priors = make_priors(variables_);
   Box box{VectorXd(variables_ + 2), VectorXd(variables_ + 2)};
   for (Index i = 0; i < hyperparameters_.size(); ++i) {
     box.lower[i] = priors[static_cast<std::size_t>(i)].lower;
     box.upper[i] = priors[static_cast<std::size_t>(i)].upper;
   }
-  hyperparameters_ = hyperparameters_.cwiseMax(box.lower).cwiseMin(box.upper);
-  descend_in_box(
-      [&](const VectorXd& at, VectorXd& gradient) {
-        const double value = -calc_log_posterior(features, values, at, gradient);
-        gradient = -gradient;
-        return value;
-      },
-      box, iterations, hyperparameters_);
+  const SmoothFunction loss = [&](const VectorXd& at, VectorXd& gradient) {
+    const double value = -calc_log_posterior(features, values, at, gradient);
+    gradient = -gradient;
+    return value;
+  };
+  // Short length scales and much noise can explain the same values, and each is a local maximum.
+  Hyperparameters present = hyperparameters_.cwiseMax(box.lower).cwiseMin(box.upper);
+  Hyperparameters noisy = GaussianProcess(feature_variables_).hyperparameters();
+  noisy[variables_ + 1] = std::log(kNoisyStart);
+  const double present_loss = descend_in_box(loss, box, iterations, present);
+  const double noisy_loss = descend_in_box(loss, box, iterations, noisy);
+  hyperparameters_ = noisy_loss < present_loss ? noisy : present;
 }
 
 ProcessFunction GaussianProcess::mean() const {

@@ -58,7 +58,8 @@ class GaussianProcess {
   // factor. Costs about N^3 multiplications for N places.
   double calc_log_posterior(const Eigen::MatrixXd& features, const Eigen::VectorXd& values,
                             const Hyperparameters& at, Eigen::VectorXd& gradient) const;
-  // Maximises that from the present hyperparameters, in at most `iterations` steps.
+  // Maximises that in at most `iterations` steps, once from the present hyperparameters and once from
+  // the means of the priors with much noise. Keeps the better result.
   void fit(const Eigen::MatrixXd& features, const Eigen::VectorXd& values, int iterations);
 
   // Replaces the data on which the process is conditioned: one place per column, and its value. If
