@@ -7,7 +7,7 @@
 namespace armwright {
 namespace {
 
-constexpr std::size_t kMemory = 8;
+constexpr std::size_t kKeptPairs = 8;
 
 struct Pair {
   Eigen::VectorXd step;
@@ -77,7 +77,7 @@ double descend_in_box(const SmoothFunction& function, const Box& box, int iterat
     pair.curvature = pair.step.dot(pair.change);
     if (pair.curvature > 1e-10 * pair.step.norm() * pair.change.norm()) {
       pairs.push_back(std::move(pair));
-      if (pairs.size() > kMemory) {
+      if (pairs.size() > kKeptPairs) {
         pairs.pop_front();
       }
     }

@@ -15,8 +15,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kShortest = 1.0 / 128;
-constexpr double kLongest = 1.6;
+constexpr double kShortestSide = 1.0 / 128;
+constexpr double kLongestSide = 1.6;
 constexpr int kSuccesses = 3;
 // A success is an improvement by this share of the best value's magnitude.
 constexpr double kLeastImprovement = 1e-3;
@@ -55,7 +55,7 @@ TurboRegion::TurboRegion(const TurboBox& box, const ProblemDescription& problem,
       weights_(VectorXd::Ones(n_)) {}
 
 bool TurboRegion::has_converged() const {
-  return length_ < kShortest;
+  return length_ < kShortestSide;
 }
 
 void TurboRegion::begin(const MatrixXd& places, std::span<const Score> scores) {
@@ -96,7 +96,7 @@ void TurboRegion::add_batch(const MatrixXd& places, std::span<const Score> score
   const double most_failures =
       std::ceil(std::max(4.0, static_cast<double>(n_)) / static_cast<double>(places.cols()));
   if (successes_ == kSuccesses) {
-    length_ = std::min(2 * length_, kLongest);
+    length_ = std::min(2 * length_, kLongestSide);
     successes_ = 0;
   } else if (failures_ >= most_failures) {
     length_ /= 2;
