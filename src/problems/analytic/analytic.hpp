@@ -25,8 +25,8 @@
 // shift is a whole number: that of the plain form is rounded away from 0, the random one to the
 // nearest. Functions with integer variables are not rotated.
 //
-// sphere, ellipsoid, rosenbrock and rastrigin are sums of squares and have residuals. Rosenbrock has two
-// residuals per pair of neighbouring variables: 10 (y_{i+1} - y_i^2) and 1 - y_i. Rastrigin has two
+// Sphere, ellipsoid, rosenbrock and rastrigin are sums of squares and have residuals. Rosenbrock has
+// two residuals per pair of neighbouring variables: 10 (y_{i+1} - y_i^2) and 1 - y_i. Rastrigin has two
 // residuals per variable: z_i and sqrt(20) sin(pi z_i). A BBOB function whose value includes f_opt
 // is no sum of squares and has no residuals.
 //
