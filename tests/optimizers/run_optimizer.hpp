@@ -1,4 +1,4 @@
-// A run of an optimizer of the table in memory.
+// Runs of an optimizer of the table in memory.
 #pragma once
 
 #include <string>
@@ -9,13 +9,18 @@
 
 namespace armwright {
 
+inline void minimize(const std::string& name, MemoryEvaluator& evaluator, std::uint64_t seed,
+                     const std::vector<std::string>& options = {}) {
+  const OptimizerRow& row = find_optimizer(name);
+  row.make(Options::parse(name, row.options, options))->minimize(evaluator, seed);
+}
+
 inline MemoryEvaluator run_optimizer(const std::string& name, const Problem& problem,
                                      const MemoryEvaluatorSettings& settings,
                                      std::uint64_t seed = 1,
                                      const std::vector<std::string>& options = {}) {
-  const OptimizerRow& row = find_optimizer(name);
   MemoryEvaluator evaluator(problem, settings);
-  row.make(Options::parse(name, row.options, options))->minimize(evaluator, seed);
+  minimize(name, evaluator, seed, options);
   return evaluator;
 }
 

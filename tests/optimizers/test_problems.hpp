@@ -139,4 +139,11 @@ inline std::unique_ptr<Problem> make_log_bowl() {
       });
 }
 
+// Returns a problem whose variables all have the same bounds and start.
+inline FunctionProblem make_problem(std::size_t dimension, double start, double lower, double upper,
+                                    std::function<double(std::span<const double>)> function) {
+  std::vector<DecisionVariable> variables(dimension, {"x", "", lower, upper, start, Scale::linear});
+  return {variables, [function](std::span<const double> x, std::uint64_t) { return function(x); }};
+}
+
 }  // namespace armwright

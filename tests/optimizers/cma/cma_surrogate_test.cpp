@@ -11,6 +11,7 @@
 
 #include "base/expect_error.hpp"
 #include "base/random.hpp"
+#include "optimizers/run_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "optimizers/test_problems.hpp"
 #include "problems/analytic/analytic.hpp"
@@ -140,24 +141,12 @@ TEST(CmaSurrogate, EqualPointsLeaveAModelThatAgreesWithThem) {
 
 const std::vector<std::string> kWithSurrogate = {"surrogate=quadratic"};
 
-FunctionProblem make_problem(std::size_t dimension, double start, double lower, double upper,
-                             std::function<double(std::span<const double>)> function) {
-  std::vector<DecisionVariable> variables(dimension, {"x", "", lower, upper, start, Scale::linear});
-  return {variables, [function](std::span<const double> x, std::uint64_t) { return function(x); }};
-}
-
-void minimize(MemoryEvaluator& evaluator, std::uint64_t seed,
-              const std::vector<std::string>& assignments) {
-  const OptimizerRow& row = find_optimizer("cmaes");
-  row.make(Options::parse("cmaes", row.options, assignments))->minimize(evaluator, seed);
-}
-
 std::int64_t count_to_target(const Problem& problem, double target,
                              std::vector<std::string> assignments = kWithSurrogate) {
   std::vector<std::int64_t> counts;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     MemoryEvaluator evaluator(problem, {.budget = 3500});
-    minimize(evaluator, seed, assignments);
+    minimize("cmaes", evaluator, seed, assignments);
     const auto hit = std::ranges::find_if(evaluator.trace(), [&](const MemoryEvaluator::Entry& e) {
       return e.score.objectives[0] < target;
     });
@@ -181,7 +170,7 @@ TEST(CmaSurrogate, EvaluatesAllPointsWhereTheModelOrdersThemWrongly) {
     return std::fmod(1e7 * std::abs(x[0] + x[1] + x[2] + x[3] + x[4]), 1.0);
   });
   MemoryEvaluator evaluator(problem, {.budget = 400});
-  minimize(evaluator, 1, kWithSurrogate);
+  minimize("cmaes", evaluator, 1, kWithSurrogate);
   std::map<std::int64_t, std::size_t> sizes;
   for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
     ++sizes[entry.generation];
@@ -195,7 +184,8 @@ TEST(CmaSurrogate, EvaluatesInBatchesOfTheMultiple) {
   const auto problem = make_analytic("sphere", 6);
   for (const std::size_t multiple : {1, 4}) {
     MemoryEvaluator evaluator(*problem, {.budget = 60});
-    minimize(evaluator, 1, {"surrogate=quadratic", "batch_multiple=" + std::to_string(multiple)});
+    minimize("cmaes", evaluator, 1,
+             {"surrogate=quadratic", "batch_multiple=" + std::to_string(multiple)});
     // The first batch is the start, and the budget cuts the last one.
     const auto sizes =
         std::span(evaluator.batch_sizes()).subspan(1, evaluator.batch_sizes().size() - 2);
@@ -210,7 +200,7 @@ TEST(CmaSurrogate, FailedPointsAreNoPointsOfTheModel) {
   // Every third evaluation fails, with a penalty that no quadratic could follow.
   const auto problem = make_analytic("sphere", 5);
   MemoryEvaluator evaluator(*problem, {.budget = 400, .fail_every = 3});
-  minimize(evaluator, 1, kWithSurrogate);
+  minimize("cmaes", evaluator, 1, kWithSurrogate);
   double best = 1;
   for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
     best = std::min(best, entry.score.objectives[0]);
@@ -222,8 +212,8 @@ TEST(CmaSurrogate, WithoutItTheTraceIsThatOfNoOption) {
   const auto problem = make_analytic("rosenbrock", 4);
   MemoryEvaluator none(*problem, {.budget = 300});
   MemoryEvaluator unnamed(*problem, {.budget = 300});
-  minimize(none, 3, {"surrogate=none"});
-  minimize(unnamed, 3, {});
+  minimize("cmaes", none, 3, {"surrogate=none"});
+  minimize("cmaes", unnamed, 3, {});
   EXPECT_EQ(none.trace(), unnamed.trace());
 }
 
@@ -231,7 +221,7 @@ TEST(CmaSurrogate, ImpossibleCombinationsAreRefused) {
   const auto problem = make_analytic("sphere", 3);
   MemoryEvaluator evaluator(*problem, {.budget = 10});
   const auto message = [&](const std::string& other) {
-    return usage_error_of([&] { minimize(evaluator, 1, {"surrogate=quadratic", other}); });
+    return usage_error_of([&] { minimize("cmaes", evaluator, 1, {"surrogate=quadratic", other}); });
   };
   EXPECT_THAT(message("uncertainty_handling=true"), HasSubstr("leaves most of them without one"));
   EXPECT_THAT(message("feasibility_first=true"), HasSubstr("jumps where a constraint is met"));

@@ -7,6 +7,7 @@
 #include "base/expect_error.hpp"
 #include "optimizers/cma/cma_distribution.hpp"
 #include "optimizers/cma/cma_search.hpp"
+#include "optimizers/run_optimizer.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "optimizers/test_problems.hpp"
 #include "problems/analytic/analytic.hpp"
@@ -18,17 +19,11 @@ namespace {
 using testing::DoubleNear;
 using testing::ElementsAre;
 
-void minimize(MemoryEvaluator& evaluator, std::uint64_t seed,
-              const std::vector<std::string>& assignments = {}) {
-  const OptimizerRow& row = find_optimizer("cmaes");
-  row.make(Options::parse("cmaes", row.options, assignments))->minimize(evaluator, seed);
-}
-
 // Evaluations until the objective is below the target; the budget if it never is.
 std::int64_t count_to_target(const Problem& problem, double target, std::int64_t budget,
                              std::uint64_t seed, const std::vector<std::string>& assignments = {}) {
   MemoryEvaluator evaluator(problem, {.budget = budget});
-  minimize(evaluator, seed, assignments);
+  minimize("cmaes", evaluator, seed, assignments);
   for (std::size_t i = 0; i < evaluator.trace().size(); ++i) {
     if (evaluator.trace()[i].score.objectives[0] < target) {
       return static_cast<std::int64_t>(i) + 1;
@@ -47,12 +42,6 @@ std::int64_t count_median_to_target(const Problem& problem, double target, std::
   return counts[2];
 }
 
-FunctionProblem make_problem(std::size_t dimension, double start, double lower, double upper,
-                             std::function<double(std::span<const double>)> function) {
-  std::vector<DecisionVariable> variables(dimension, {"x", "", lower, upper, start, Scale::linear});
-  return {variables, [function](std::span<const double> x, std::uint64_t) { return function(x); }};
-}
-
 TEST(CmaEs, AnOptimumOnTheBoundIsReached) {
   // Falls towards two bounds without end, a bowl in the rest: minimum -1 - 2 at (0, 1, 0.3, 0.3).
   const auto problem = make_problem(4, 0.5, 0, 1, [](std::span<const double> x) {
@@ -67,7 +56,7 @@ TEST(CmaEs, NeverLeavesTheBox) {
   });
   for (const char* sigma : {"sigma=0.05", "sigma=1"}) {
     MemoryEvaluator evaluator(problem, {.budget = 5000});
-    minimize(evaluator, 1, {sigma});
+    minimize("cmaes", evaluator, 1, {sigma});
     for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
       ASSERT_FALSE(entry.score.clipped);
     }
@@ -158,7 +147,7 @@ TEST(CmaEs, RestartsWithLargerPopulations) {
   const auto problem = make_analytic("rastrigin", 5);
   for (const char* restarts : {"restarts=ipop", "restarts=bipop"}) {
     MemoryEvaluator evaluator(*problem, {.budget = 60000});
-    minimize(evaluator, 1, {restarts});
+    minimize("cmaes", evaluator, 1, {restarts});
     EXPECT_GE(count_largest_batch(evaluator), 4 * calc_default_population(5)) << restarts;
     EXPECT_EQ(evaluator.trace().size(), 60000u);
     EXPECT_LT(evaluator.best().value(), 1e-8) << restarts;
@@ -168,7 +157,7 @@ TEST(CmaEs, RestartsWithLargerPopulations) {
 TEST(CmaEs, WithoutRestartsItEndsByItself) {
   const auto problem = make_analytic("rastrigin", 5);
   MemoryEvaluator evaluator(*problem, {.budget = 60000});
-  minimize(evaluator, 1, {"restarts=none"});
+  minimize("cmaes", evaluator, 1, {"restarts=none"});
   EXPECT_LT(evaluator.trace().size(), 20000u);
   EXPECT_EQ(count_largest_batch(evaluator), calc_default_population(5));
 }
@@ -176,7 +165,7 @@ TEST(CmaEs, WithoutRestartsItEndsByItself) {
 TEST(CmaEs, AFlatFunctionEndsARun) {
   const auto problem = make_problem(3, 0.5, 0, 1, [](std::span<const double>) { return 7.0; });
   MemoryEvaluator evaluator(problem, {.budget = 100000});
-  minimize(evaluator, 1, {"restarts=none"});
+  minimize("cmaes", evaluator, 1, {"restarts=none"});
   EXPECT_LT(evaluator.trace().size(), 1000u);
 }
 
@@ -201,7 +190,7 @@ TEST(CmaEs, UncertaintyHandlingEnlargesTheStepOnPureNoise) {
                                 });
   const auto spread = [&](const char* handling) {
     MemoryEvaluator evaluator(problem, {.budget = 1000, .fresh = true});
-    minimize(evaluator, 1, {"sigma=0.001", handling, "restarts=none"});
+    minimize("cmaes", evaluator, 1, {"sigma=0.001", handling, "restarts=none"});
     return calc_late_spread(evaluator);
   };
   EXPECT_LT(spread("uncertainty_handling=false"), 0.02);
@@ -211,7 +200,7 @@ TEST(CmaEs, UncertaintyHandlingEnlargesTheStepOnPureNoise) {
 TEST(CmaEs, EveryGenerationIsDeclaredAndItsMeanRecommended) {
   const auto problem = make_analytic("sphere", 10);
   MemoryEvaluator evaluator(*problem, {.budget = 101});
-  minimize(evaluator, 1);
+  minimize("cmaes", evaluator, 1);
   EXPECT_THAT(std::span(evaluator.batch_sizes()).first(3), ElementsAre(1, 10, 10));
   EXPECT_EQ(evaluator.generations(), 10);
   EXPECT_EQ(evaluator.recommended().size(), 10u);
@@ -226,7 +215,7 @@ TEST(CmaEs, TheSameSeedGivesTheSameTraceThroughRestartsAndNoise) {
   const auto problem = make_analytic("rastrigin", 3);
   const auto run = [&](std::uint64_t seed) {
     MemoryEvaluator evaluator(*problem, {.budget = 5000, .fresh = true});
-    minimize(evaluator, seed, {"uncertainty_handling=true"});
+    minimize("cmaes", evaluator, seed, {"uncertainty_handling=true"});
     return evaluator.trace();
   };
   EXPECT_EQ(run(7), run(7));
@@ -236,14 +225,14 @@ TEST(CmaEs, TheSameSeedGivesTheSameTraceThroughRestartsAndNoise) {
 TEST(CmaEs, BeginsAtTheStart) {
   const auto problem = make_analytic("sphere", 4);
   MemoryEvaluator evaluator(*problem, {.budget = 1});
-  minimize(evaluator, 1);
+  minimize("cmaes", evaluator, 1);
   EXPECT_THAT(evaluator.trace().front().asked, testing::Each(DoubleNear(-2.5, 1e-14)));
 }
 
 TEST(CmaEs, AZeroBudgetAsksForNothing) {
   const auto problem = make_analytic("sphere", 4);
   MemoryEvaluator evaluator(*problem, {.budget = 0});
-  minimize(evaluator, 1);
+  minimize("cmaes", evaluator, 1);
   EXPECT_TRUE(evaluator.trace().empty());
   EXPECT_TRUE(evaluator.recommended().empty());
 }
@@ -251,7 +240,7 @@ TEST(CmaEs, AZeroBudgetAsksForNothing) {
 TEST(CmaEs, PopulationsAreRoundedUpToTheBatchMultiple) {
   const auto problem = make_analytic("sphere", 10);
   MemoryEvaluator evaluator(*problem, {.budget = 100});
-  minimize(evaluator, 1, {"batch_multiple=16"});
+  minimize("cmaes", evaluator, 1, {"batch_multiple=16"});
   EXPECT_THAT(std::span(evaluator.batch_sizes()).first(2), ElementsAre(1, 16));
 }
 
@@ -259,7 +248,7 @@ TEST(CmaEs, ImpossiblePopulationsAreRefused) {
   const auto problem = make_analytic("sphere", 4);
   MemoryEvaluator evaluator(*problem, {.budget = 100});
   const auto message = [&](const std::vector<std::string>& assignments) {
-    return usage_error_of([&] { minimize(evaluator, 1, assignments); });
+    return usage_error_of([&] { minimize("cmaes", evaluator, 1, assignments); });
   };
   EXPECT_THAT(message({"population=1"}), testing::HasSubstr("option 'population' is 1"));
   EXPECT_THAT(message({"mu=9"}), testing::HasSubstr("option 'mu' is 9"));
@@ -319,8 +308,8 @@ TEST(CmaEs, TheUnitOfTheObjectiveChangesNothing) {
   for (const char* rule : {"feasibility_first=true", "feasibility_first=false"}) {
     MemoryEvaluator one(*problem, {.budget = 1000});
     MemoryEvaluator two(other, {.budget = 1000});
-    minimize(one, 1, {rule, "tol_fun=0"});
-    minimize(two, 1, {rule, "tol_fun=0"});
+    minimize("cmaes", one, 1, {rule, "tol_fun=0"});
+    minimize("cmaes", two, 1, {rule, "tol_fun=0"});
     ASSERT_EQ(one.trace().size(), two.trace().size());
     for (std::size_t i = 0; i < one.trace().size(); ++i) {
       ASSERT_EQ(one.trace()[i].asked, two.trace()[i].asked) << rule << ", evaluation " << i;

@@ -196,8 +196,8 @@ TEST_F(StudyTest, MethodFactsAreInTheTablesAndInTheResult) {
   EXPECT_THAT(lines[2], EndsWith("," + make_method_fields(facts[1])));
   EXPECT_THAT(lines[2], HasSubstr("optimizer finished"));
   EXPECT_EQ(std::ranges::count(lines[0], ','), std::ranges::count(lines[2], ','));
-  const auto json = nlohmann::json::parse(files.at("result.json"));
-  EXPECT_EQ(json["problems"][0]["optimizers"]["nlopt:neldermead"]["method"],
+  const auto whole = nlohmann::json::parse(files.at("result.json"));
+  EXPECT_EQ(whole["problems"][0]["optimizers"]["nlopt:neldermead"]["method"],
             method_to_json(facts[1]));
 }
 
