@@ -9,8 +9,8 @@
 
 namespace armwright {
 
-inline void minimize(const std::string& name, MemoryEvaluator& evaluator, std::uint64_t seed,
-                     const std::vector<std::string>& options = {}) {
+inline void minimize_with(const std::string& name, MemoryEvaluator& evaluator, std::uint64_t seed,
+                          const std::vector<std::string>& options = {}) {
   const OptimizerRow& row = find_optimizer(name);
   row.make(Options::parse(name, row.options, options))->minimize(evaluator, seed);
 }
@@ -20,7 +20,7 @@ inline MemoryEvaluator run_optimizer(const std::string& name, const Problem& pro
                                      std::uint64_t seed = 1,
                                      const std::vector<std::string>& options = {}) {
   MemoryEvaluator evaluator(problem, settings);
-  minimize(name, evaluator, seed, options);
+  minimize_with(name, evaluator, seed, options);
   return evaluator;
 }
 

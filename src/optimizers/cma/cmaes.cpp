@@ -155,7 +155,8 @@ std::vector<OptionSpec> make_option_specs() {
            "evaluated as it takes until the model orders the last points as the objective does; "
            "evaluates batches of few points, at least batch_multiple",
        .fallback = std::string("none"),
-       .choices = {"none", "quadratic"}},
+       .choices = {"none", "quadratic"},
+       .is_new = true},
   };
 }
 

@@ -34,7 +34,7 @@ class Dfls : public Optimizer {
 std::vector<OptimizerRow> make_dfls_rows() {
   return {{
       .name = "dfls",
-      .summary = "Least squares in a trust region: linear models of residuals, no derivatives",
+      .summary = "Least squares by linear models of residuals in a trust region",
       .source =
           "Cartis, Fiala, Marteau and Roberts 2019, Improving the flexibility and robustness of "
           "model-based derivative-free optimization solvers; Zhang, Conn and Scheinberg 2010, A "

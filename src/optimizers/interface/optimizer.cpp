@@ -109,6 +109,13 @@ const std::string& Options::get_text(const std::string& name) const {
   return std::get<std::string>(values_.at(name));
 }
 
+bool is_recorded(std::span<const OptionSpec> specs, const std::string& option,
+                 const OptionValue& value) {
+  const auto spec = std::ranges::find(specs, option, &OptionSpec::name);
+  return spec == specs.end() ||
+         (spec->changes_result && !(spec->is_new && value == spec->fallback));
+}
+
 std::string to_text(const OptionValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) {
     return *flag ? "true" : "false";

@@ -63,6 +63,8 @@ struct OptionSpec {
   double upper = 0;
   std::vector<std::string> choices = {};  // of a text: the allowed values; empty: any text
   bool changes_result = true;             // false: a run may be resumed with another value
+  // Newer than version 1.0: records leave out its default, as those of version 1.0 do.
+  bool is_new = false;
 };
 
 // Limits of the descriptions that plugins give of themselves, for shared libraries and programs
@@ -91,6 +93,10 @@ class Options {
   std::map<std::string, OptionValue> values_;
 };
 std::string to_text(const OptionValue& value);
+// Returns whether the records of runs and studies name that value of the option: they leave out what
+// changes no result, and the default of a new option.
+bool is_recorded(std::span<const OptionSpec> specs, const std::string& option,
+                 const OptionValue& value);
 
 // A fault of the optimizer: it crashed, hung or broke its contract. The run keeps all evaluations
 // and is marked as failed. Every other exception out of minimize() comes from the evaluator.

@@ -35,6 +35,10 @@ constexpr const char* kRegionNames[] = {"run", "winner", "design"};
 constexpr const char* kScaleNames[] = {"plain", "logarithm", "ranks"};
 constexpr const char* kTermNames[] = {"linear", "squares", "products"};
 
+// Of longer runs only every 2nd, 4th, ... usable evaluation is kept, so that ten million of them take
+// no more memory than this many.
+constexpr std::size_t kMostKept = 65'536;
+
 // The evaluations of a run that an analysis can use, as coordinates of SearchSpace divided by the
 // width of the box.
 struct RecordedPoints {
@@ -44,6 +48,7 @@ struct RecordedPoints {
   std::vector<double> values = {};
   std::vector<double> winner = {};  // a decision vector; empty if the run has no number
   std::size_t left_out = 0;
+  std::size_t usable = 0;  // kept or not
 
   std::vector<double> calc_shares(std::span<const double> x) const {
     std::vector<double> shares = space.to_coordinates(x);
@@ -59,6 +64,7 @@ RecordedPoints read_points(const fs::path& folder, const ProblemDescription& des
   RecordedPoints points{.space = SearchSpace(description.variables),
                         .journal = read_journal(folder / "journal")};
   double best = kInfinity;
+  std::size_t stride = 1;
   for (std::size_t number = 0; number < points.journal.training.size(); ++number) {
     const EvaluationRecord record = points.journal.training[number];
     const bool is_whole = record.evaluation.status == EvaluationStatus::ok &&
@@ -70,8 +76,19 @@ RecordedPoints read_points(const fs::path& folder, const ProblemDescription& des
       ++points.left_out;
       continue;
     }
-    points.numbers.push_back(number);
-    points.values.push_back(value);
+    if (points.usable++ % stride == 0) {
+      points.numbers.push_back(number);
+      points.values.push_back(value);
+    }
+    if (points.numbers.size() > kMostKept) {
+      stride *= 2;
+      for (std::size_t i = 0; 2 * i < points.numbers.size(); ++i) {
+        points.numbers[i] = points.numbers[2 * i];
+        points.values[i] = points.values[2 * i];
+      }
+      points.numbers.resize((points.numbers.size() + 1) / 2);
+      points.values.resize(points.numbers.size());
+    }
     if (value < best && is_feasible(record.evaluation)) {
       best = value;
       points.winner = record.x;
@@ -243,7 +260,7 @@ Importance calc_importance(const fs::path& folder, const ProblemDescription& des
   const RecordedPoints points = read_points(folder, description);
   Importance importance;
   importance.objective = get_scalar_quantity(description.objectives);
-  importance.evaluations = points.numbers.size();
+  importance.evaluations = points.usable;
   importance.left_out = points.left_out;
   for (const DecisionVariable& variable : description.variables) {
     importance.variables.push_back(variable.name);

@@ -47,8 +47,7 @@ std::string quote_list(std::span<const std::string> texts) {
 std::vector<std::string> list_options(const StudyOptimizer& optimizer) {
   std::vector<std::string> all;
   for (const auto& [name, value] : optimizer.parsed.values()) {
-    const auto spec = std::ranges::find(optimizer.row.options, name, &OptionSpec::name);
-    if (spec == optimizer.row.options.end() || spec->changes_result) {
+    if (is_recorded(optimizer.row.options, name, value)) {
       all.push_back(name + "=" + to_text(value));
     }
   }

@@ -162,8 +162,7 @@ void check_plan(const RunPlan& plan) {
 std::string to_json(const RunPlan& plan) {
   json options = json::object();
   for (const auto& [name, value] : plan.options.values()) {
-    const auto spec = std::ranges::find(plan.optimizer.options, name, &OptionSpec::name);
-    if (spec == plan.optimizer.options.end() || spec->changes_result) {
+    if (is_recorded(plan.optimizer.options, name, value)) {
       options[name] = to_json_value(value);
     }
   }

@@ -146,7 +146,7 @@ std::int64_t count_to_target(const Problem& problem, double target,
   std::vector<std::int64_t> counts;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     MemoryEvaluator evaluator(problem, {.budget = 3500});
-    minimize("cmaes", evaluator, seed, assignments);
+    minimize_with("cmaes", evaluator, seed, assignments);
     const auto hit = std::ranges::find_if(evaluator.trace(), [&](const MemoryEvaluator::Entry& e) {
       return e.score.objectives[0] < target;
     });
@@ -170,7 +170,7 @@ TEST(CmaSurrogate, EvaluatesAllPointsWhereTheModelOrdersThemWrongly) {
     return std::fmod(1e7 * std::abs(x[0] + x[1] + x[2] + x[3] + x[4]), 1.0);
   });
   MemoryEvaluator evaluator(problem, {.budget = 400});
-  minimize("cmaes", evaluator, 1, kWithSurrogate);
+  minimize_with("cmaes", evaluator, 1, kWithSurrogate);
   std::map<std::int64_t, std::size_t> sizes;
   for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
     ++sizes[entry.generation];
@@ -184,8 +184,8 @@ TEST(CmaSurrogate, EvaluatesInBatchesOfTheMultiple) {
   const auto problem = make_analytic("sphere", 6);
   for (const std::size_t multiple : {1, 4}) {
     MemoryEvaluator evaluator(*problem, {.budget = 60});
-    minimize("cmaes", evaluator, 1,
-             {"surrogate=quadratic", "batch_multiple=" + std::to_string(multiple)});
+    minimize_with("cmaes", evaluator, 1,
+                  {"surrogate=quadratic", "batch_multiple=" + std::to_string(multiple)});
     // The first batch is the start, and the budget cuts the last one.
     const auto sizes =
         std::span(evaluator.batch_sizes()).subspan(1, evaluator.batch_sizes().size() - 2);
@@ -200,7 +200,7 @@ TEST(CmaSurrogate, FailedPointsAreNoPointsOfTheModel) {
   // Every third evaluation fails, with a penalty that no quadratic could follow.
   const auto problem = make_analytic("sphere", 5);
   MemoryEvaluator evaluator(*problem, {.budget = 400, .fail_every = 3});
-  minimize("cmaes", evaluator, 1, kWithSurrogate);
+  minimize_with("cmaes", evaluator, 1, kWithSurrogate);
   double best = 1;
   for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
     best = std::min(best, entry.score.objectives[0]);
@@ -212,8 +212,8 @@ TEST(CmaSurrogate, WithoutItTheTraceIsThatOfNoOption) {
   const auto problem = make_analytic("rosenbrock", 4);
   MemoryEvaluator none(*problem, {.budget = 300});
   MemoryEvaluator unnamed(*problem, {.budget = 300});
-  minimize("cmaes", none, 3, {"surrogate=none"});
-  minimize("cmaes", unnamed, 3, {});
+  minimize_with("cmaes", none, 3, {"surrogate=none"});
+  minimize_with("cmaes", unnamed, 3, {});
   EXPECT_EQ(none.trace(), unnamed.trace());
 }
 
@@ -221,7 +221,9 @@ TEST(CmaSurrogate, ImpossibleCombinationsAreRefused) {
   const auto problem = make_analytic("sphere", 3);
   MemoryEvaluator evaluator(*problem, {.budget = 10});
   const auto message = [&](const std::string& other) {
-    return usage_error_of([&] { minimize("cmaes", evaluator, 1, {"surrogate=quadratic", other}); });
+    return usage_error_of([&] {
+      minimize_with("cmaes", evaluator, 1, {"surrogate=quadratic", other});
+    });
   };
   EXPECT_THAT(message("uncertainty_handling=true"), HasSubstr("leaves most of them without one"));
   EXPECT_THAT(message("feasibility_first=true"), HasSubstr("jumps where a constraint is met"));

@@ -23,7 +23,7 @@ using testing::ElementsAre;
 std::int64_t count_to_target(const Problem& problem, double target, std::int64_t budget,
                              std::uint64_t seed, const std::vector<std::string>& assignments = {}) {
   MemoryEvaluator evaluator(problem, {.budget = budget});
-  minimize("cmaes", evaluator, seed, assignments);
+  minimize_with("cmaes", evaluator, seed, assignments);
   for (std::size_t i = 0; i < evaluator.trace().size(); ++i) {
     if (evaluator.trace()[i].score.objectives[0] < target) {
       return static_cast<std::int64_t>(i) + 1;
@@ -56,7 +56,7 @@ TEST(CmaEs, NeverLeavesTheBox) {
   });
   for (const char* sigma : {"sigma=0.05", "sigma=1"}) {
     MemoryEvaluator evaluator(problem, {.budget = 5000});
-    minimize("cmaes", evaluator, 1, {sigma});
+    minimize_with("cmaes", evaluator, 1, {sigma});
     for (const MemoryEvaluator::Entry& entry : evaluator.trace()) {
       ASSERT_FALSE(entry.score.clipped);
     }
@@ -147,7 +147,7 @@ TEST(CmaEs, RestartsWithLargerPopulations) {
   const auto problem = make_analytic("rastrigin", 5);
   for (const char* restarts : {"restarts=ipop", "restarts=bipop"}) {
     MemoryEvaluator evaluator(*problem, {.budget = 60000});
-    minimize("cmaes", evaluator, 1, {restarts});
+    minimize_with("cmaes", evaluator, 1, {restarts});
     EXPECT_GE(count_largest_batch(evaluator), 4 * calc_default_population(5)) << restarts;
     EXPECT_EQ(evaluator.trace().size(), 60000u);
     EXPECT_LT(evaluator.best().value(), 1e-8) << restarts;
@@ -157,7 +157,7 @@ TEST(CmaEs, RestartsWithLargerPopulations) {
 TEST(CmaEs, WithoutRestartsItEndsByItself) {
   const auto problem = make_analytic("rastrigin", 5);
   MemoryEvaluator evaluator(*problem, {.budget = 60000});
-  minimize("cmaes", evaluator, 1, {"restarts=none"});
+  minimize_with("cmaes", evaluator, 1, {"restarts=none"});
   EXPECT_LT(evaluator.trace().size(), 20000u);
   EXPECT_EQ(count_largest_batch(evaluator), calc_default_population(5));
 }
@@ -165,7 +165,7 @@ TEST(CmaEs, WithoutRestartsItEndsByItself) {
 TEST(CmaEs, AFlatFunctionEndsARun) {
   const auto problem = make_problem(3, 0.5, 0, 1, [](std::span<const double>) { return 7.0; });
   MemoryEvaluator evaluator(problem, {.budget = 100000});
-  minimize("cmaes", evaluator, 1, {"restarts=none"});
+  minimize_with("cmaes", evaluator, 1, {"restarts=none"});
   EXPECT_LT(evaluator.trace().size(), 1000u);
 }
 
@@ -190,7 +190,7 @@ TEST(CmaEs, UncertaintyHandlingEnlargesTheStepOnPureNoise) {
                                 });
   const auto spread = [&](const char* handling) {
     MemoryEvaluator evaluator(problem, {.budget = 1000, .fresh = true});
-    minimize("cmaes", evaluator, 1, {"sigma=0.001", handling, "restarts=none"});
+    minimize_with("cmaes", evaluator, 1, {"sigma=0.001", handling, "restarts=none"});
     return calc_late_spread(evaluator);
   };
   EXPECT_LT(spread("uncertainty_handling=false"), 0.02);
@@ -200,7 +200,7 @@ TEST(CmaEs, UncertaintyHandlingEnlargesTheStepOnPureNoise) {
 TEST(CmaEs, EveryGenerationIsDeclaredAndItsMeanRecommended) {
   const auto problem = make_analytic("sphere", 10);
   MemoryEvaluator evaluator(*problem, {.budget = 101});
-  minimize("cmaes", evaluator, 1);
+  minimize_with("cmaes", evaluator, 1);
   EXPECT_THAT(std::span(evaluator.batch_sizes()).first(3), ElementsAre(1, 10, 10));
   EXPECT_EQ(evaluator.generations(), 10);
   EXPECT_EQ(evaluator.recommended().size(), 10u);
@@ -215,7 +215,7 @@ TEST(CmaEs, TheSameSeedGivesTheSameTraceThroughRestartsAndNoise) {
   const auto problem = make_analytic("rastrigin", 3);
   const auto run = [&](std::uint64_t seed) {
     MemoryEvaluator evaluator(*problem, {.budget = 5000, .fresh = true});
-    minimize("cmaes", evaluator, seed, {"uncertainty_handling=true"});
+    minimize_with("cmaes", evaluator, seed, {"uncertainty_handling=true"});
     return evaluator.trace();
   };
   EXPECT_EQ(run(7), run(7));
@@ -225,14 +225,14 @@ TEST(CmaEs, TheSameSeedGivesTheSameTraceThroughRestartsAndNoise) {
 TEST(CmaEs, BeginsAtTheStart) {
   const auto problem = make_analytic("sphere", 4);
   MemoryEvaluator evaluator(*problem, {.budget = 1});
-  minimize("cmaes", evaluator, 1);
+  minimize_with("cmaes", evaluator, 1);
   EXPECT_THAT(evaluator.trace().front().asked, testing::Each(DoubleNear(-2.5, 1e-14)));
 }
 
 TEST(CmaEs, AZeroBudgetAsksForNothing) {
   const auto problem = make_analytic("sphere", 4);
   MemoryEvaluator evaluator(*problem, {.budget = 0});
-  minimize("cmaes", evaluator, 1);
+  minimize_with("cmaes", evaluator, 1);
   EXPECT_TRUE(evaluator.trace().empty());
   EXPECT_TRUE(evaluator.recommended().empty());
 }
@@ -240,7 +240,7 @@ TEST(CmaEs, AZeroBudgetAsksForNothing) {
 TEST(CmaEs, PopulationsAreRoundedUpToTheBatchMultiple) {
   const auto problem = make_analytic("sphere", 10);
   MemoryEvaluator evaluator(*problem, {.budget = 100});
-  minimize("cmaes", evaluator, 1, {"batch_multiple=16"});
+  minimize_with("cmaes", evaluator, 1, {"batch_multiple=16"});
   EXPECT_THAT(std::span(evaluator.batch_sizes()).first(2), ElementsAre(1, 16));
 }
 
@@ -248,7 +248,7 @@ TEST(CmaEs, ImpossiblePopulationsAreRefused) {
   const auto problem = make_analytic("sphere", 4);
   MemoryEvaluator evaluator(*problem, {.budget = 100});
   const auto message = [&](const std::vector<std::string>& assignments) {
-    return usage_error_of([&] { minimize("cmaes", evaluator, 1, assignments); });
+    return usage_error_of([&] { minimize_with("cmaes", evaluator, 1, assignments); });
   };
   EXPECT_THAT(message({"population=1"}), testing::HasSubstr("option 'population' is 1"));
   EXPECT_THAT(message({"mu=9"}), testing::HasSubstr("option 'mu' is 9"));
@@ -308,8 +308,8 @@ TEST(CmaEs, TheUnitOfTheObjectiveChangesNothing) {
   for (const char* rule : {"feasibility_first=true", "feasibility_first=false"}) {
     MemoryEvaluator one(*problem, {.budget = 1000});
     MemoryEvaluator two(other, {.budget = 1000});
-    minimize("cmaes", one, 1, {rule, "tol_fun=0"});
-    minimize("cmaes", two, 1, {rule, "tol_fun=0"});
+    minimize_with("cmaes", one, 1, {rule, "tol_fun=0"});
+    minimize_with("cmaes", two, 1, {rule, "tol_fun=0"});
     ASSERT_EQ(one.trace().size(), two.trace().size());
     for (std::size_t i = 0; i < one.trace().size(); ++i) {
       ASSERT_EQ(one.trace()[i].asked, two.trace()[i].asked) << rule << ", evaluation " << i;

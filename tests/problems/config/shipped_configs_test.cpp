@@ -339,7 +339,10 @@ TEST(ShippedProblems, AnalyticFunctionsHaveOneCase) {
     EXPECT_EQ(loaded.tracking(), nullptr);
     EXPECT_EQ(loaded.problem->description().failure_error, std::numeric_limits<double>::infinity());
     EXPECT_EQ(loaded.problem->description().name, name);
-    EXPECT_THAT(loaded.problem->description().variables, SizeIs(name == "constrained" ? 4 : 10));
+    EXPECT_THAT(loaded.problem->description().variables, SizeIs(name == "branin"        ? 2
+                                                                : name == "constrained" ? 4
+                                                                : name == "hartmann6"   ? 6
+                                                                                        : 10));
     EXPECT_FALSE(loaded.schedule.changes_cases());
     EXPECT_EQ(loaded.schedule.cases, 1);
     EXPECT_EQ(loaded.sets.validation_cases, 1);
