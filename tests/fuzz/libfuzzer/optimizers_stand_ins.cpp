@@ -4,14 +4,22 @@
 #include "optimizers/builtin/random_search.hpp"
 #include "optimizers/ceres/ceres_backend.hpp"
 #include "optimizers/cma/cma_search.hpp"
+#include "optimizers/dfls/dfls_search.hpp"
 #include "optimizers/nlopt/nlopt_algorithms.hpp"
 #include "optimizers/pagmo/pagmo_backend.hpp"
 #include "optimizers/plugins/plugin_library.hpp"
 #include "optimizers/plugins/plugin_process.hpp"
+#include "optimizers/turbo/turbo.hpp"
 
 namespace armwright {
 
 std::vector<OptimizerRow> make_cmaes_rows() {
+  return {};
+}
+std::vector<OptimizerRow> make_dfls_rows() {
+  return {};
+}
+std::vector<OptimizerRow> make_turbo_rows() {
   return {};
 }
 std::vector<OptimizerRow> make_ceres_rows() {
