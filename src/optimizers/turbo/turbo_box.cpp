@@ -46,7 +46,7 @@ double TurboBox::calc_least_width(std::size_t i, double share) const {
   if (!is_discrete(i)) {
     return 0;
   }
-  // Of a logarithmic integer the cell below is the wider one.
+  // A logarithmic integer has its wider neighbouring cell below.
   const double value = std::abs(to_value(i, share));
   const double width = space_.upper()[i] - space_.lower()[i];
   const double cell =

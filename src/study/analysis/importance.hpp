@@ -25,7 +25,7 @@ enum class ValueScale { plain, logarithm, ranks };
 
 struct ImportancePart {
   ImportanceRegion region = ImportanceRegion::run;
-  // Of the region: the distance of its bounds from the winner, as a share of each variable's range
+  // The distance of the region's bounds from the winner, as a share of each variable's range
   // on its scale. Nothing for the whole run.
   std::optional<double> half_width = {};
   std::size_t points = 0;

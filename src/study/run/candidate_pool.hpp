@@ -1,7 +1,7 @@
 // Keeps the designs of a run that are worth judging on the validation set: with fixed training
 // cases every improvement, with growing cases every improvement of a stage, with new cases for every
-// generation the best of each (objectives on different cases cannot be compared), with several objectives the front, and the optimizer's
-// recommendations.
+// generation the best of each (objectives on different cases cannot be compared), with several
+// objectives the front, and the optimizer's recommendations.
 #pragma once
 
 #include <cstdint>

@@ -29,7 +29,7 @@ TEST(CmaSurrogate, TheRankCorrelationIsThatOfHandCounts) {
   const std::vector<double> a = {1, 2, 3, 4};
   EXPECT_EQ(calc_rank_agreement(a, std::vector<double>{10, 20, 30, 40}), 1);
   EXPECT_EQ(calc_rank_agreement(a, std::vector<double>{4, 3, 2, 1}), -1);
-  // Of the six pairs, one is in another order: (5 - 1) / 6.
+  // One of the six pairs is in another order: (5 - 1) / 6.
   EXPECT_DOUBLE_EQ(calc_rank_agreement(a, std::vector<double>{1, 3, 2, 4}), 4.0 / 6);
   // One pair is equal in the second list and counts as neither: 5 / 6.
   EXPECT_DOUBLE_EQ(calc_rank_agreement(a, std::vector<double>{1, 2, 2, 4}), 5.0 / 6);
