@@ -12,7 +12,8 @@ class Dfls : public Optimizer {
       : settings_{.radius = options.get_number("radius"),
                   .smallest_radius = options.get_number("smallest_radius"),
                   .restarts = static_cast<int>(options.get_integer("restarts")),
-                  .exact = options.get_bool("jacobian")} {}
+                  .exact = options.get_bool("jacobian"),
+                  .may_be_rough = options.get_bool("power_laws")} {}
 
   void check_problem(const ProblemDescription& problem) const override {
     if (settings_.exact) {
@@ -40,7 +41,8 @@ std::vector<OptimizerRow> make_dfls_rows() {
           "model-based derivative-free optimization solvers; Zhang, Conn and Scheinberg 2010, A "
           "derivative-free algorithm for least-squares minimization; Powell 2009, The BOBYQA "
           "algorithm for bound constrained optimization without derivatives",
-      .capabilities = {.bounds = true, .batch = true, .residuals = true, .local = true},
+      .capabilities =
+          {.bounds = true, .batch = true, .residuals = true, .local = true, .growing = true},
       .options =
           {{.name = "radius",
             .description = "of the first trust region, share of the box: how far from the start "
@@ -66,7 +68,13 @@ std::vector<OptimizerRow> make_dfls_rows() {
                 "use exact derivatives, computed along with the simulation, where the problem "
                 "offers that (--engine articulated); such an evaluation costs 1 + n/4 (rounded up) "
                 "for n variables",
-            .fallback = false}},
+            .fallback = false},
+           {.name = "power_laws",
+            .description =
+                "where every variable is logarithmic, model residuals that do not change their "
+                "sign "
+                "as products of powers of the variables, and restart earlier and farther away",
+            .fallback = true}},
       .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
         return std::make_unique<Dfls>(options);
       },

@@ -27,8 +27,22 @@ constexpr double kResolution = 0.1;  // alpha_1: by how much the resolution fall
 constexpr double kRadius = 0.5;      // alpha_2: the radius then, as a share of the last resolution
 constexpr double kFailed = 0.25;     // the radius after a failed evaluation, share of the step
 
+// Of searches with power laws. Below the limit, roughness of simulations hides what is to be gained.
+constexpr double kRoughLimit = 0.4;    // of the radius, as a share of the first one
+constexpr double kRoughRestart = 0.8;  // the radius of each restart, as a share of the last one
+
 // A larger sum of squares counts as a failed evaluation: its products would not be finite.
 constexpr double kLargestUsableSum = 1e200;
+
+// Thrown if the cases have grown and no point of the model works on them.
+struct NothingLeft {};
+
+// Returns true if every variable with room is logarithmic.
+bool has_logarithms(const std::vector<DecisionVariable>& variables) {
+  return std::ranges::all_of(variables, [](const DecisionVariable& variable) {
+    return variable.scale == Scale::logarithmic || variable.lower == variable.upper;
+  });
+}
 
 // Places are relative to the start, in units of the width of the box. Variables whose bounds are
 // equal have no coordinate.
@@ -77,31 +91,41 @@ class Places {
 class DflsSearch {
  public:
   DflsSearch(const DflsSettings& settings, Evaluator& evaluator)
-      : settings_(settings), function_(evaluator), places_(function_.space()) {}
+      : settings_(settings),
+        function_(evaluator),
+        places_(function_.space()),
+        is_rough_(settings.may_be_rough && has_logarithms(evaluator.problem().variables)),
+        limit_(is_rough_ ? std::max(settings.smallest_radius, kRoughLimit * settings.radius)
+                         : settings.smallest_radius) {}
 
   // Returns why it ends.
   const char* run() {
     const VectorXd start = VectorXd::Zero(places_.dimension());
     radius_ = settings_.radius;
-    std::vector<VectorXd> places = list_axis_places(start, 1);
-    places.insert(places.begin(), start);
-    if (!(settings_.exact ? derive(start) : build(places, {}))) {
+    if (!begin(start)) {
       return "the start failed, so there is nothing to descend from";
     }
     descend();
     double side = 1;
     for (int restart = 0; restart < settings_.restarts && !settings_.exact; ++restart) {
       const ResidualSample best = model_->centre();
+      const std::uint64_t changes = function_.evaluator().case_changes();
       side = -side;
-      radius_ = settings_.radius * std::pow(kShrink, restart + 1);
-      if (radius_ < settings_.smallest_radius || best.square_sum == 0) {
+      radius_ = settings_.radius * std::pow(is_rough_ ? kRoughRestart : kShrink, restart + 1);
+      if (radius_ < limit_ || best.square_sum == 0) {
         break;
       }
       build(list_axis_places(best.place, side), {best});
       descend();
-      if (model_->centre().square_sum >= best.square_sum) {
+      if (function_.evaluator().case_changes() == changes &&
+          model_->centre().square_sum >= best.square_sum) {
         break;
       }
+    }
+    if (limit_ > settings_.smallest_radius) {
+      radius_ = limit_;
+      limit_ = settings_.smallest_radius;
+      descend();
     }
     return "it has converged: its trust region is smaller than smallest_radius";
   }
@@ -112,13 +136,11 @@ class DflsSearch {
     resolution_ = radius_;
     while (true) {
       const ResidualSample& centre = model_->centre();
-      const VectorXd step = solve_trust_region(model_->jacobian(), centre.residuals,
-                                               places_.get_box(centre.place), radius_);
-      const double predicted =
-          centre.square_sum - (centre.residuals + model_->jacobian() * step).squaredNorm();
+      const VectorXd step = model_->find_step(places_.get_box(centre.place), radius_);
+      const double predicted = centre.square_sum - model_->predict(step).squaredNorm();
       if (step.norm() < kSafety * resolution_ || !(predicted > 0)) {
         radius_ = std::max(kShrink * radius_, resolution_);
-        if (!improve() && !refine()) {
+        if (!improve() && !grow() && !refine()) {
           return;
         }
         continue;
@@ -134,7 +156,7 @@ class DflsSearch {
       const double ratio = (before - sample->square_sum) / predicted;
       adapt_radius(ratio, step.norm());
       learn(std::move(*sample));
-      if (ratio < kPoor && !improve() && radius_ <= resolution_ && !refine()) {
+      if (ratio < kPoor && !improve() && radius_ <= resolution_ && !grow() && !refine()) {
         return;
       }
     }
@@ -153,12 +175,37 @@ class DflsSearch {
 
   // Lowers the resolution. Returns false if it is at its limit.
   bool refine() {
-    if (resolution_ <= settings_.smallest_radius) {
+    if (resolution_ <= limit_) {
       return false;
     }
-    radius_ = std::max(kRadius * resolution_, settings_.smallest_radius);
-    resolution_ = std::max(kResolution * resolution_, settings_.smallest_radius);
+    radius_ = std::max(kRadius * resolution_, limit_);
+    resolution_ = std::max(kResolution * resolution_, limit_);
     return true;
+  }
+
+  // Says that the model has nothing to improve at this resolution, so that the run may add training
+  // cases. Returns true if it has: then the model is one of the best point on these cases.
+  bool grow() {
+    Evaluator& evaluator = function_.evaluator();
+    const std::size_t cases = evaluator.cases();
+    if (!evaluator.grow_cases()) {
+      return false;
+    }
+    const ResidualModel old = *std::exchange(model_, std::nullopt);
+    for (const ResidualSample& known : old.list_samples()) {
+      std::optional<ResidualSample> sample = evaluate(known.place);
+      if (!sample) {
+        continue;
+      }
+      const VectorXd place = sample->place;
+      model_ = ResidualModel::extend(old, *sample, cases, evaluator.cases());
+      if (!model_) {
+        return build(list_axis_places(place, 1), {std::move(*sample)});
+      }
+      is_derived_ = false;
+      return true;
+    }
+    throw NothingLeft();
   }
 
   // Makes the radius a share of a step whose evaluation failed. Returns false if that is less than
@@ -166,7 +213,7 @@ class DflsSearch {
   bool retreat(double length) {
     radius_ = kFailed * length;
     resolution_ = std::min(resolution_, radius_);
-    return radius_ >= settings_.smallest_radius;
+    return radius_ >= limit_;
   }
 
   // Adds an evaluated step to the model.
@@ -174,8 +221,7 @@ class DflsSearch {
     if (!settings_.exact) {
       model_->include(std::move(sample), radius_);
     } else if (sample.square_sum < model_->centre().square_sum) {
-      model_.emplace(std::vector{model_->centre(), std::move(sample)},
-                     MatrixXd(model_->jacobian()));
+      make_model({model_->centre(), std::move(sample)}, model_->calc_jacobian());
       is_derived_ = false;
     }
   }
@@ -234,6 +280,20 @@ class DflsSearch {
     return places;
   }
 
+  // Makes the first model. Returns false if the start has failed.
+  bool begin(const VectorXd& start) {
+    if (settings_.exact) {
+      return derive(start);
+    }
+    std::vector<VectorXd> places = list_axis_places(start, 1);
+    places.insert(places.begin(), start);
+    return build(places, {});
+  }
+
+  void make_model(std::vector<ResidualSample> samples, MatrixXd jacobian) {
+    model_.emplace(std::move(samples), std::move(jacobian), is_rough_);
+  }
+
   // Makes a model of places, which are one batch, and of a known point. Points that fail are left
   // out. Returns false if none is left.
   bool build(const std::vector<VectorXd>& places, std::vector<ResidualSample> samples) {
@@ -246,9 +306,9 @@ class DflsSearch {
       return false;
     }
     MatrixXd jacobian =
-        model_ ? model_->jacobian()
+        model_ ? model_->calc_jacobian()
                : MatrixXd(MatrixXd::Zero(samples.front().residuals.size(), places_.dimension()));
-    model_.emplace(std::move(samples), std::move(jacobian));
+    make_model(std::move(samples), std::move(jacobian));
     return true;
   }
 
@@ -271,7 +331,7 @@ class DflsSearch {
         jacobian(row, k) = std::isfinite(slope) ? slope : 0;
       }
     }
-    model_.emplace(std::vector{std::move(*sample)}, std::move(jacobian));
+    make_model({std::move(*sample)}, std::move(jacobian));
     is_derived_ = true;
     return true;
   }
@@ -307,6 +367,8 @@ class DflsSearch {
   const DflsSettings& settings_;
   ScalarFunction function_;
   Places places_;
+  bool is_rough_;  // power laws, and descents that end early
+  double limit_;   // of the radius
   std::optional<ResidualModel> model_;
   double radius_ = 0;
   double resolution_ = 0;
@@ -318,6 +380,8 @@ class DflsSearch {
 void search_with_dfls(const DflsSettings& settings, Evaluator& evaluator) {
   try {
     evaluator.explain_end(DflsSearch(settings, evaluator).run());
+  } catch (const NothingLeft&) {
+    evaluator.explain_end("no point of its model works on the training cases that were added");
   } catch (const EvaluatorStopped&) {  // the run is over, which is no error
   }
 }

@@ -1,5 +1,5 @@
-// Derivative-free least squares in a trust region. Each iteration minimises the squares of linear
-// models of the residuals (residual_model.hpp) within a radius and the bounds (trust_step.hpp), and
+// Derivative-free least squares in a trust region. Each iteration minimises the squares of models
+// of the residuals (residual_model.hpp) within a radius and the bounds (trust_step.hpp), and
 // evaluates that step. The ratio of the reduction to its prediction changes the radius.
 //
 // Two radii. The trust region's radius changes with every step. The resolution is its lower limit
@@ -15,6 +15,13 @@
 // After convergence, the search starts again about the best point with half the radius and the
 // points on the other side, until that gains nothing. Simulated objectives are rough, and another
 // model looks across the roughness that stopped the last one.
+//
+// If every variable is logarithmic, models are power laws and simulations are taken to be rough:
+// descents end at a larger radius, restarts shrink it less, and only the last descent goes on to
+// smallest_radius.
+//
+// When a model has nothing to improve, the run may add training cases (Evaluator::grow_cases()). The
+// search goes on from its best point with the slopes that it knows.
 //
 // A failed evaluation is never part of a model: it makes the radius a quarter of the step.
 //
@@ -37,6 +44,7 @@ struct DflsSettings {
   double smallest_radius = 1e-7;  // share of the box
   int restarts = 10;              // at most
   bool exact = false;             // use the problem's derivatives
+  bool may_be_rough = true;       // use power laws if every variable is logarithmic
 };
 
 // Searches until the evaluator stops or the search has converged; says why it ends. The problem has

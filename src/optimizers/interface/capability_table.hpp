@@ -15,7 +15,7 @@ struct CapabilityRow {
   const char* without;  // what an optimizer without it does
 };
 
-inline constexpr std::array<CapabilityRow, 13> kCapabilityTable{{
+inline constexpr std::array<CapabilityRow, 14> kCapabilityTable{{
     {"bounds", &Capabilities::bounds, "keeps its points within the bounds",
      "may propose points outside the bounds: the nearest point inside is evaluated"},
     {"constraints", &Capabilities::constraints, "sees the constraints apart from the objective",
@@ -51,6 +51,9 @@ inline constexpr std::array<CapabilityRow, 13> kCapabilityTable{{
     {"categorical", &Capabilities::categorical,
      "treats the words of a category as words without an order",
      "treats a category as the numbers of its words, in their order"},
+    {"growing", &Capabilities::growing,
+     "takes up more training cases along the run: --schedule growing:K:FACTOR",
+     "takes up more training cases only if it works in generations"},
 }};
 
 }  // namespace armwright

@@ -81,9 +81,16 @@ class Evaluator {
   // An optimizer with generations calls this before each generation, also before the first. In a
   // run, the schedules `fresh`, `coevolution` and `growing` change the training cases at this call.
   virtual void begin_generation() = 0;
+  // An optimizer without generations, but with the capability `growing`, calls this when it makes no
+  // more progress. With the schedule `growing` the run may then add training cases. Returns true if
+  // it has.
+  virtual bool grow_cases() { return false; }
   // Returns how often the training cases have changed. Objectives and residuals from before a change
   // cannot be compared with later ones.
   virtual std::uint64_t case_changes() const { return 0; }
+  // Returns the number of training cases per candidate. The residuals of a candidate are those of
+  // its cases, one case after the other and equally many of each, then those that all cases share.
+  virtual std::size_t cases() const { return 1; }
   // Recommends a point as a candidate for the winner, for example the mean of a distribution. The
   // run already knows the evaluated points. The call simulates nothing and costs no budget. It
   // counts also after the budget has ended, until minimize() returns or the optimizer's process has

@@ -36,6 +36,7 @@ struct Capabilities {
       false;  // plans with the whole budget: another budget changes the run from its beginning
   bool integer = false;      // proposes whole numbers for integers
   bool categorical = false;  // treats categories as words without an order
+  bool growing = false;      // copes with training cases that become more; generations do anyway
 };
 
 // The least that a problem must have for an optimizer.

@@ -47,7 +47,9 @@ class StartedElsewhere : public Evaluator {
   bool stopped() const override { return allowance_ == 0 || is_spent_ || evaluator_.stopped(); }
   std::int64_t remaining() const override { return std::min(allowance_, evaluator_.remaining()); }
   void begin_generation() override { evaluator_.begin_generation(); }
+  bool grow_cases() override { return evaluator_.grow_cases(); }
   std::uint64_t case_changes() const override { return evaluator_.case_changes(); }
+  std::size_t cases() const override { return evaluator_.cases(); }
   void recommend(std::span<const double> x) override { evaluator_.recommend(x); }
 
   bool has_evaluated() const { return has_evaluated_; }

@@ -14,34 +14,6 @@ using nlohmann::json;
 
 constexpr double kNoError = std::numeric_limits<double>::quiet_NaN();
 
-struct MeanAndError {
-  double mean = kNoError;
-  double standard_error = kNoError;
-};
-
-// Counts only the values that are not NaN.
-MeanAndError calc_mean(std::span<const double> values) {
-  double count = 0;
-  double sum = 0;
-  for (const double value : values) {
-    if (!std::isnan(value)) {
-      sum += value;
-      ++count;
-    }
-  }
-  if (count == 0) {
-    return {};
-  }
-  const double mean = sum / count;
-  double squares = 0;
-  for (const double value : values) {
-    if (!std::isnan(value)) {
-      squares += (value - mean) * (value - mean);
-    }
-  }
-  return {mean, count > 1 ? std::sqrt(squares / (count - 1) / count) : kNoError};
-}
-
 }  // namespace
 
 std::vector<double> get_case_errors(std::span<const TrackingResult> results) {
@@ -56,10 +28,6 @@ ErrorSummary summarize_cases(std::span<const TrackingResult> results) {
   return summarize(get_case_errors(results), kFailureError_m);
 }
 
-double calc_standard_error(std::span<const double> errors) {
-  return calc_mean(errors).standard_error;
-}
-
 PointStatistics calc_point_statistics(std::span<const TrackingResult> results, std::size_t points) {
   PointStatistics statistics;
   for (std::size_t k = 0; k < points; ++k) {
@@ -67,7 +35,7 @@ PointStatistics calc_point_statistics(std::span<const TrackingResult> results, s
     for (const TrackingResult& result : results) {
       errors.push_back(result.status == SimulationStatus::ok ? result.point_error_m[k] : kNoError);
     }
-    const MeanAndError point = calc_mean(errors);
+    const MeanAndError point = calc_mean_and_error(errors);
     statistics.mean_m.push_back(point.mean);
     statistics.standard_error_m.push_back(point.standard_error);
   }

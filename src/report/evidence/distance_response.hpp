@@ -18,8 +18,6 @@ namespace armwright {
 // the other functions take.
 std::vector<double> get_case_errors(std::span<const TrackingResult> results);
 ErrorSummary summarize_cases(std::span<const TrackingResult> results);
-// Returns the standard error s / sqrt(n) of the mean of the n errors with a number; NaN for n < 2.
-double calc_standard_error(std::span<const double> errors);
 
 // The mean error of each point over the cases of a set. Only cases with a number count: the earlier
 // points of a diverged case are left out too.

@@ -88,7 +88,7 @@ json simulate_speeds(PageSimulator& simulator, const TrackingProblem& problem,
       const ErrorSummary summary = summarize_cases(results);
       series[i]["mean_m"].push_back(finite_or_null(summary.mean));
       series[i]["standard_error_m"].push_back(
-          finite_or_null(calc_standard_error(get_case_errors(results))));
+          finite_or_null(calc_mean_and_error(get_case_errors(results)).standard_error));
       series[i]["median_m"].push_back(finite_or_null(summary.median));
       series[i]["failures"].push_back(summary.failures);
     }

@@ -204,24 +204,24 @@ class ReproductionPage {
         continue;
       }
       const ErrorSummary summary = result->calc_summary();
-      rows.push_back(
-          {{"label", part.label},
-           {"design", part.design},
-           {"problem", part.problem},
-           {"overrides", part.overrides},
-           {"where", part.where},
-           {"published_error_m", finite_or_null(part.published_error_m)},
-           {"published_torque_n_m", finite_or_null(part.published_torque_n_m)},
-           {"cases", summary.cases},
-           {"mean_m", finite_or_null(summary.mean)},
-           {"median_m", finite_or_null(summary.median)},
-           {"p95_m", finite_or_null(summary.percentile_95)},
-           {"worst_m", finite_or_null(summary.worst)},
-           {"standard_error_m", finite_or_null(calc_standard_error(result->case_errors))},
-           {"failures", summary.failures},
-           {"torque_n_m", finite_or_null(result->total_torque_n_m)},
-           {"reason", get_reason(part)},
-           {"command", make_command(part)}});
+      rows.push_back({{"label", part.label},
+                      {"design", part.design},
+                      {"problem", part.problem},
+                      {"overrides", part.overrides},
+                      {"where", part.where},
+                      {"published_error_m", finite_or_null(part.published_error_m)},
+                      {"published_torque_n_m", finite_or_null(part.published_torque_n_m)},
+                      {"cases", summary.cases},
+                      {"mean_m", finite_or_null(summary.mean)},
+                      {"median_m", finite_or_null(summary.median)},
+                      {"p95_m", finite_or_null(summary.percentile_95)},
+                      {"worst_m", finite_or_null(summary.worst)},
+                      {"standard_error_m",
+                       finite_or_null(calc_mean_and_error(result->case_errors).standard_error)},
+                      {"failures", summary.failures},
+                      {"torque_n_m", finite_or_null(result->total_torque_n_m)},
+                      {"reason", get_reason(part)},
+                      {"command", make_command(part)}});
     }
     return rows;
   }
@@ -302,7 +302,8 @@ class ReproductionPage {
       const ErrorSummary summary = result->calc_summary();
       values.push_back(finite_or_null(result->part.value));
       means.push_back(finite_or_null(summary.mean));
-      standard_errors.push_back(finite_or_null(calc_standard_error(result->case_errors)));
+      standard_errors.push_back(
+          finite_or_null(calc_mean_and_error(result->case_errors).standard_error));
       medians.push_back(finite_or_null(summary.median));
       failures.push_back(summary.failures);
       cases = summary.cases;

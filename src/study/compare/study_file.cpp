@@ -367,15 +367,16 @@ void check_budget(const StudyPlan& plan, const Cell& cell) {
 }
 
 void check_cells(const StudyPlan& plan) {
+  const auto changing = std::ranges::find_if(
+      plan.problems, [](const StudyProblem& problem) { return problem.schedule.changes_cases(); });
   std::vector<std::string> without_generations;
   for (const StudyOptimizer& optimizer : plan.optimizers) {
-    if (!optimizer.row.capabilities.generations && !optimizer.schedule) {
+    if (changing != plan.problems.end() && !optimizer.schedule &&
+        !takes_schedule(optimizer.row, changing->schedule)) {
       without_generations.push_back(optimizer.label);
     }
   }
-  const auto changing = std::ranges::find_if(
-      plan.problems, [](const StudyProblem& problem) { return problem.schedule.changes_cases(); });
-  if (changing != plan.problems.end() && !without_generations.empty()) {
+  if (!without_generations.empty()) {
     throw Error(
         ErrorKind::usage,
         fmt::format("schedule {} gives every generation new training cases, so only optimizers "

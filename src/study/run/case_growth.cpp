@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 
 CaseGrowth::CaseGrowth(const RunPlan& plan)
     : problem_(*plan.problem.problem),
       factor_(plan.schedule.factor),
+      least_window_(plan.optimizer.capabilities.generations
+                        ? 3 * problem_.description().variables.size()
+                        : 1),
       cases_(plan.schedule.cases),
       most_(static_cast<int>(plan.problem.sets.training_cases > 0
                                  ? std::int64_t{plan.problem.sets.training_cases}
@@ -23,24 +27,9 @@ void CaseGrowth::add(const EvaluationRecord& record, double objective) {
   best_.push_back(std::min(before, objective));
 }
 
-// Returns the standard error of the best objective between cases.
-double CaseGrowth::calc_noise() const {
-  if (case_objectives_.size() < 2) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const auto count = static_cast<double>(case_objectives_.size());
-  const double mean =
-      std::accumulate(case_objectives_.begin(), case_objectives_.end(), 0.0) / count;
-  double square = 0;
-  for (const double objective : case_objectives_) {
-    square += (objective - mean) * (objective - mean);
-  }
-  return std::sqrt(square / (count - 1) / count);
-}
-
 bool CaseGrowth::grow(std::uint64_t cases_left) {
   const std::size_t n = problem_.description().variables.size();
-  const std::size_t window = std::max(3 * n, best_.size() - generation_begin_);
+  const std::size_t window = std::max(least_window_, best_.size() - generation_begin_);
   generation_begin_ = best_.size();
   if (best_.size() <= window || cases_ >= most_) {
     return false;
@@ -48,7 +37,10 @@ bool CaseGrowth::grow(std::uint64_t cases_left) {
   const double gain = best_[best_.size() - 1 - window] - best_.back();
   const double wanted = std::max(cases_ + 1.0, std::round(cases_ * factor_));
   const int next = static_cast<int>(std::min(wanted, static_cast<double>(most_)));
-  const bool is_gain = !(gain < calc_noise());  // also if no design is feasible yet
+  const double noise = calc_mean_and_error(case_objectives_).standard_error;
+  // Of one case the noise is unknown, and may be larger than every gain. If no design is feasible
+  // yet, the gain is no number, and the search goes on.
+  const bool is_gain = case_objectives_.empty() || (!std::isnan(noise) && !(gain < noise));
   if (is_gain || (n + 1) * static_cast<std::uint64_t>(next) > cases_left) {
     return false;
   }

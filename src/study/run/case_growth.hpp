@@ -1,7 +1,9 @@
 // Decides when a run gets more training cases (schedule `growing`). All candidates between two growths
 // have the same first K cases: a stage. At the beginning of a generation the cases grow if both hold:
-//   - the stage has had more than w evaluations, w = max(3 n, evaluations of the last generation), n
-//     the number of decision variables,
+//   - the stage has had more than w evaluations. w is the number of evaluations of the last
+//     generation, and at least 3 n, n the number of decision variables. For an optimizer without
+//     generations that asks for more cases when it makes no progress, w is the number of evaluations
+//     since it last asked,
 //   - the best objective has improved by less than its noise over the last w evaluations,
 //       b_(t-w) - b_t < s / sqrt(K),
 //     where s is the standard deviation of the objectives that the best design would have on each of
@@ -33,10 +35,9 @@ class CaseGrowth {
   bool grow(std::uint64_t cases_left);
 
  private:
-  double calc_noise() const;
-
   const Problem& problem_;
   double factor_;
+  std::size_t least_window_;
   int cases_, most_;
   std::vector<double> best_;             // per evaluation of the stage, the best objective so far
   std::vector<double> case_objectives_;  // of the best design

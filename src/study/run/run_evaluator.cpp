@@ -79,6 +79,15 @@ void RunEvaluator::begin_generation() {
   }
 }
 
+bool RunEvaluator::grow_cases() {
+  if (stopped() || !growth_) {
+    return false;
+  }
+  const std::uint64_t changes = case_changes_;
+  start_generation();
+  return case_changes_ > changes;
+}
+
 void RunEvaluator::start_generation() {
   if (plan_.schedule.kind == Schedule::Kind::fresh) {
     const std::uint64_t first = counts_.generations * block_.numbers.size();

@@ -51,7 +51,9 @@ class RunEvaluator final : public Evaluator {
   bool stopped() const override;
   std::int64_t remaining() const override;
   void begin_generation() override;
+  bool grow_cases() override;
   std::uint64_t case_changes() const override { return case_changes_; }
+  std::size_t cases() const override { return block_.numbers.size(); }
   void recommend(std::span<const double> x) override;
   void explain_end(std::string_view reason) override;
 

@@ -45,8 +45,14 @@ void check_size(const RunPlan& plan) {
 
 }  // namespace
 
+bool takes_schedule(const OptimizerRow& optimizer, const Schedule& schedule) {
+  const Capabilities& can = optimizer.capabilities;
+  return !schedule.changes_cases() || can.generations ||
+         (schedule.kind == Schedule::Kind::growing && can.growing);
+}
+
 Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer) {
-  if (problem.schedule.changes_cases() && !optimizer.capabilities.generations) {
+  if (!takes_schedule(optimizer, problem.schedule)) {
     return {.kind = Schedule::Kind::fixed, .cases = problem.fixed_cases};
   }
   return problem.schedule;
@@ -96,7 +102,7 @@ void check_plan(const RunPlan& plan) {
                             evaluations, row.limits.evaluations * plan.schedule.cases,
                             row.limits.alternative));
   }
-  if (plan.schedule.changes_cases() && !row.capabilities.generations) {
+  if (!takes_schedule(row, plan.schedule)) {
     throw Error(ErrorKind::usage,
                 fmt::format("optimizer '{}' has no generations, so training cases that change "
                             "between them (schedule {}) are not possible; use --schedule fixed:K, "

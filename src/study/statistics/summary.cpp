@@ -92,6 +92,29 @@ Interval calc_median_interval(std::span<const double> values, double level, int 
       resamples, stream);
 }
 
+MeanAndError calc_mean_and_error(std::span<const double> values) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  double count = 0;
+  double sum = 0;
+  for (const double value : values) {
+    if (!std::isnan(value)) {
+      sum += value;
+      ++count;
+    }
+  }
+  if (count == 0) {
+    return {kNone, kNone};
+  }
+  const double mean = sum / count;
+  double squares = 0;
+  for (const double value : values) {
+    if (!std::isnan(value)) {
+      squares += (value - mean) * (value - mean);
+    }
+  }
+  return {mean, count > 1 ? std::sqrt(squares / (count - 1) / count) : kNone};
+}
+
 ErrorSummary summarize(std::span<const double> errors, double failure_error) {
   ErrorSummary summary;
   summary.cases = errors.size();

@@ -1,5 +1,5 @@
 // Summaries of values: quantiles, bootstrap intervals, and the errors of a set of test cases. All
-// functions but summarize() throw std::invalid_argument for no values, NaN and -infinity.
+// functions but the last two throw std::invalid_argument for no values, NaN and -infinity.
 #pragma once
 
 #include <cstdint>
@@ -48,6 +48,14 @@ Interval calc_median_interval(std::span<const double> values, double level, int 
 
 // Returns the quantiles (1 - level) / 2 and (1 + level) / 2 of resampled statistics.
 Interval calc_percentile_interval(std::span<const double> resampled, double level);
+
+// Both count only the values that are not NaN, n of them.
+struct MeanAndError {
+  double mean;            // NaN for n = 0
+  double standard_error;  // s / sqrt(n), with s the standard deviation; NaN for n < 2
+};
+
+MeanAndError calc_mean_and_error(std::span<const double> values);
 
 // The errors of a set of test cases. A mean alone would be decided by a few arms that lose their
 // target.

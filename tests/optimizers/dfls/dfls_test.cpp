@@ -88,6 +88,28 @@ TEST(Dfls, SearchesLogarithmicVariablesByFactors) {
   EXPECT_LT(*evaluator.best(), 1e-15);
 }
 
+// Errors of controllers: a factor of a gain changes them by a factor.
+TEST(Dfls, PowerLawsNeedFewerEvaluationsWhereFactorsMultiply) {
+  const ResidualProblem problem(
+      std::vector<DecisionVariable>(6, {"gain", "", 1, 10000, 100, Scale::logarithmic}),
+      [](std::span<const double> x) {
+        std::vector<double> residuals;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          const double next = x[(i + 1) % x.size()];
+          residuals.push_back(3e3 / x[i] * std::pow(next / 100, 0.3));
+          residuals.push_back(x[i] / 1e3);
+        }
+        return residuals;
+      });
+  const auto best = [&](std::int64_t budget, const char* option) {
+    return *run_optimizer("dfls", problem, {.budget = budget}, 1, {option}).best();
+  };
+  const double limit = best(5000, "power_laws=false");
+  EXPECT_LT(best(14, "power_laws=true"), 1.01 * limit);
+  EXPECT_GT(best(14, "power_laws=false"), 1.1 * limit);
+  EXPECT_LT(best(500, "power_laws=true"), (1 + 1e-9) * limit) << "the last descent refines";
+}
+
 // The steps of a model of atan are too long where it is flat, and end where evaluations fail.
 TEST(Dfls, ShortensStepsThatFail) {
   const ResidualProblem problem(make_box(2, -2, 2, -1), [](std::span<const double> x) {

@@ -12,6 +12,7 @@
 #include "report/reproduction/reproduction.hpp"
 #include "report/reproduction/small_reproduction.hpp"
 #include "study/run/run_observer.hpp"
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 namespace {
@@ -80,7 +81,8 @@ TEST_F(ReproductionPageTest, HasAllKeysAndWhatWasComputed) {
   EXPECT_EQ(row["published_error_m"], *record.results.at("A.5").part.published_error_m);
   EXPECT_EQ(row["mean_m"], *record.results.at("A.5").calc_summary().mean);
   EXPECT_EQ(row["command"], "armwright evaluate table-a5 --problem q1-complex --cases 2");
-  EXPECT_EQ(row["standard_error_m"], calc_standard_error(record.results.at("A.5").case_errors));
+  EXPECT_EQ(row["standard_error_m"],
+            calc_mean_and_error(record.results.at("A.5").case_errors).standard_error);
   EXPECT_EQ(row["reason"], "");
   for (const json& one : page["rows"]) {
     EXPECT_EQ(one["reason"], one["label"] == "A.9" ? "The reason." : "") << one["label"];

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <string>
 
 #include "base/expect_error.hpp"
 #include "study/run/run_folder.hpp"
@@ -18,11 +19,12 @@ constexpr std::uint64_t kPlenty = 1'000'000;
 constexpr int kWindow = 30;  // evaluations, of ten variables
 
 // A growth on a problem of ten variables.
-CaseGrowth make_growth(const char* schedule) {
+CaseGrowth make_growth(const char* schedule, bool generations = true) {
   static const LoadedProblem sphere = load_problem("sphere");
   RunPlan plan;
   plan.problem = sphere;
   plan.schedule = *read_schedule(schedule);
+  plan.optimizer.capabilities = {.generations = generations, .growing = !generations};
   return CaseGrowth(plan);
 }
 
@@ -59,6 +61,27 @@ TEST(CaseGrowth, AGenerationIsTheShortestTimeThatIsLookedAt) {
   EXPECT_FALSE(growth.grow(kPlenty));
   add(growth, 50, {0.9, 1.1});
   EXPECT_TRUE(growth.grow(kPlenty));
+}
+
+TEST(CaseGrowth, WithoutGenerationsTheTimeIsThatSinceTheOptimizerLastAsked) {
+  CaseGrowth growth = make_growth("growing:2:2", false);
+  add(growth, 10, {1.8, 2.2});
+  EXPECT_FALSE(growth.grow(kPlenty)) << "nothing came before";
+  add(growth, 3, {0.9, 1.1});
+  EXPECT_FALSE(growth.grow(kPlenty)) << "a large gain";
+  add(growth, 3, {0.89, 1.09});
+  EXPECT_TRUE(growth.grow(kPlenty));
+}
+
+TEST(CaseGrowth, CasesWithoutANumberAreNoNoise) {
+  CaseGrowth growth = make_growth("growing:3:2", false);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EvaluationRecord record;
+  record.evaluation.case_errors = {0.9, 1.1, none};
+  for (int i = 0; i < 3; ++i) {
+    growth.add(record, 1);
+    EXPECT_EQ(growth.grow(kPlenty), i == 1);
+  }
 }
 
 TEST(CaseGrowth, OneCaseAlwaysGrows) {
@@ -98,8 +121,10 @@ TEST(GrowingSchedule, IsReadAndWritten) {
   }
 }
 
-TEST_F(RunTest, GrowingCasesAreTheFirstOnesAndNeverShrink) {
-  RunPlan plan = make_small_plan("ga", 400);
+class GrowingRun : public RunTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(GrowingRun, CasesAreTheFirstOnesAndNeverShrink) {
+  RunPlan plan = make_small_plan(GetParam(), 400);
   plan.schedule = *read_schedule("growing:1:2");
   const auto result = run(plan, "a");
   ASSERT_TRUE(result && result->winner);
@@ -119,8 +144,8 @@ TEST_F(RunTest, GrowingCasesAreTheFirstOnesAndNeverShrink) {
   EXPECT_LE(charged, 400u);
 }
 
-TEST_F(RunTest, ARunWithGrowingCasesThatIsStoppedEndsAsAnUninterruptedOne) {
-  RunPlan plan = make_small_plan("ga", 200);
+TEST_P(GrowingRun, ThatIsStoppedEndsAsAnUninterruptedOne) {
+  RunPlan plan = make_small_plan(GetParam(), 200);
   plan.schedule = *read_schedule("growing:1:2");
   run(plan, "whole");
   for (bool done = false; !done;) {
@@ -132,7 +157,10 @@ TEST_F(RunTest, ARunWithGrowingCasesThatIsStoppedEndsAsAnUninterruptedOne) {
   EXPECT_EQ(read_result("whole"), read_result("pieces"));
 }
 
-TEST_F(RunTest, GrowingCasesNeedAnOptimizerWithGenerations) {
+INSTANTIATE_TEST_SUITE_P(, GrowingRun, testing::Values("ga", "dfls"),
+                         [](const auto& one) { return std::string(one.param); });
+
+TEST_F(RunTest, GrowingCasesNeedAnOptimizerThatTakesThem) {
   RunPlan plan = make_small_plan("random", 60);
   plan.schedule = *read_schedule("growing:1:2");
   EXPECT_THAT(error_of(ErrorKind::usage, [&] { check_plan(plan); }),
