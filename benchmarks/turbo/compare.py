@@ -55,8 +55,8 @@ def run(problem, replicate, optimizer, options, budget, folder):
         rows = list(csv.DictReader(file))
     shutil.rmtree(folder / "run")
     shutil.rmtree(folder / "csv")
-    variables = [f"x_{i + 1}" for i in range(PROBLEMS[problem])]
-    return [[float(row[name]) for name in variables] for row in rows], [float(row["f"]) for row in rows]
+    variables = [f"x.x_{i + 1}" for i in range(PROBLEMS[problem])]
+    return [[float(row[name]) for name in variables] for row in rows], [float(row["objective"]) for row in rows]
 
 
 def find_gaps(problem, values):
@@ -90,7 +90,7 @@ def record(path, problems, replicates):
                 points, _ = run(problem, replicate, "turbo", [f"initial={first}"], first, folder)
                 design = folder / "design.json"
                 design.write_text(json.dumps(points), encoding="utf-8")
-                _, values = run(problem, replicate, f"exec:/usr/bin/python3 {HERE / 'expected_improvement.py'}", [f"design={design}"],
+                _, values = run(problem, replicate, f"exec:/usr/bin/python3 {HERE / 'expected_improvement.py'}", [f"design={design}", "silence_s=3600"],
                                 BUDGET, folder)
             with open(path, "a", encoding="utf-8") as file:
                 file.write(f"{problem},{replicate}," + ",".join(repr(gap) for gap in find_gaps(problem, values)) + "\n")

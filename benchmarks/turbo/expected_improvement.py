@@ -29,14 +29,19 @@ DESCRIPTION = {
 }
 
 
+# SciPy's Fortran code prints notes to file descriptor 1. They go to standard error; the protocol has its own copy.
+protocol = os.fdopen(os.dup(1), "w", encoding="utf-8")
+os.dup2(2, 1)
+
+
 class Stopped(Exception):
     """Raised when the host evaluates no more points."""
 
 
 def send(message):
     try:
-        sys.stdout.write(json.dumps(message) + "\n")
-        sys.stdout.flush()
+        protocol.write(json.dumps(message) + "\n")
+        protocol.flush()
     except BrokenPipeError:
         os._exit(0)  # the host has ended
 
