@@ -48,7 +48,7 @@ TEST(ReferenceStudy, RunsCollectsAndGoesOn) {
 TEST(ReferenceStudy, SaysWhichPartsThereAre) {
   const TemporaryFolder folder;
   EXPECT_EQ(run_script(folder, "q5"), 2);
-  EXPECT_THAT(read_text(folder / "out.txt"), HasSubstr("parts: designs running-times cases"));
+  EXPECT_THAT(read_text(folder / "out.txt"), HasSubstr("parts: designs running-times few cases"));
   EXPECT_EQ(run_script(folder, "--jobs many"), 2);
 }
 

@@ -93,9 +93,13 @@ OptionSpec read_option(const json& object) {
 Capabilities read_capabilities(const json& list) {
   Capabilities capabilities;
   std::vector<std::string> names;
+  std::vector<bool Capabilities::*> members;
   for (const CapabilityRow& row : kCapabilityTable) {
-    names.emplace_back(row.name);
     capabilities.*row.member = false;
+    if (row.member != &Capabilities::growing) {  // the protocol has no message that asks for cases
+      names.emplace_back(row.name);
+      members.push_back(row.member);
+    }
   }
   for (const json& one : list) {
     const std::string text = one.is_string() ? one.get<std::string>() : quote(one);
@@ -104,7 +108,7 @@ Capabilities read_capabilities(const json& list) {
       throw ProtocolError("described itself with an " +
                           describe_unknown("capability", text, names));
     }
-    capabilities.*(kCapabilityTable[static_cast<std::size_t>(found - names.begin())].member) = true;
+    capabilities.*members[static_cast<std::size_t>(found - names.begin())] = true;
   }
   return capabilities;
 }
