@@ -106,6 +106,8 @@ class Run:
         evaluations, cases, failed, clipped, feasible, generations.
     end_reason : str
         "budget", "optimizer finished" or "optimizer failed".
+    choice : str
+        Which optimizer `auto` chose and why, in two sentences; "" for other optimizers.
     end_detail : str
         Why the optimizer finished, in its own words; "" if it did not say.
     unused_evaluations : int
@@ -129,6 +131,7 @@ class Run:
         self.candidates: list[dict[str, Any]] = result.get("candidates", [])
         self.counts: dict[str, int] = result.get("counts", {})
         self.end_reason: str = result.get("end_reason", "")
+        self.choice: str = result.get("choice", "")
         self.end_detail: str = result.get("end_detail", "")
         self.unused_evaluations: int = result.get("unused_evaluations", 0)
         self.failure: str = result.get("failure", "")

@@ -55,9 +55,10 @@ class CliUserProblem : public testing::Test {
 TEST_F(CliUserProblem, RunsAndShowsAndReportsAndNeedsItsProgramForNoneOfTheLastTwo) {
   const Outcome made = run({"optimize", "exec:python3 mine.py exit", "--budget", "105", "--quiet"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_THAT(made.out, AllOf(HasSubstr("faulty: ga, seed 1"), HasSubstr("failed")));
+  EXPECT_THAT(made.out, AllOf(HasSubstr("faulty: auto, seed 1"), HasSubstr("auto chose "),
+                              HasSubstr("failed")));
   std::filesystem::remove(folder_ / "mine.py");
-  const std::string run_folder = "results/faulty-ga-seed1";
+  const std::string run_folder = "results/faulty-auto-seed1";
   EXPECT_EQ(run({"show", run_folder}).exit_code, 0);
   const Outcome report = run({"report", run_folder, "--out", "page.html"});
   EXPECT_EQ(report.exit_code, 0) << report.err;

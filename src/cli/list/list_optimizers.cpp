@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/text.hpp"
 #include "cli/list/list_views.hpp"
 #include "cli/list/optimizer_page.hpp"
 #include "cli/terminal/table.hpp"
+#include "optimizers/table/auto.hpp"
+#include "optimizers/table/auto_rules.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 
 namespace armwright {
@@ -95,11 +99,46 @@ std::string format_options(const OptimizerRow& row, const Style& style, int widt
   return table.format(style, 0, width);
 }
 
+std::string format_rules(const Style& style, int width) {
+  const std::filesystem::path file = find_auto_rules("");
+  Table table(
+      {{"rule"}, {"conditions", false, true}, {"optimizer", false, true}, {"why", false, true}});
+  int number = 0;
+  for (const AutoRule& rule : load_auto_rules(file)) {
+    table.add_row(
+        {fmt::format("{}", ++number), describe_conditions(rule), describe_used(rule), rule.why});
+  }
+  return table.format(style, 0, width) +
+         "\nThe first rule holds whose conditions are met and whose " +
+         "optimizer can work on the problem.\nThe file: " + file.string() + "\n";
+}
+
 std::string explain_optimizer(const std::string& name, const Style& style) {
   const OptimizerRow row = get_row(name);
   const int width = get_text_width(Stream::out);
   return format_heading(row, style, width) + format_facts(row, style, width) + "\n" +
-         format_capabilities(row, style, width) + "\n" + format_options(row, style, width);
+         format_capabilities(row, style, width) + "\n" + format_options(row, style, width) +
+         (row.name == kAutoName ? "\n" + format_rules(style, width) : "");
+}
+
+json rules_to_json() {
+  json rules = json::array();
+  for (const AutoRule& rule : load_auto_rules(find_auto_rules(""))) {
+    json conditions = json::object();
+    for (const AutoCondition& condition : rule.conditions) {
+      const AutoFeature& feature = kAutoFeatures[condition.feature];
+      conditions[feature.name] =
+          feature.is_flag
+              ? json(condition.lower != 0)
+              : json{{"at_least", std::isfinite(condition.lower) ? json(condition.lower) : json()},
+                     {"at_most", std::isfinite(condition.upper) ? json(condition.upper) : json()}};
+    }
+    rules.push_back({{"conditions", conditions},
+                     {"optimizer", rule.row.name},
+                     {"options", rule.options},
+                     {"why", rule.why}});
+  }
+  return rules;
 }
 
 json to_json(const OptimizerRow& row) {
@@ -121,7 +160,7 @@ json to_json(const OptimizerRow& row) {
   for (const CapabilityRow& capability : kCapabilityTable) {
     capabilities[capability.name] = row.capabilities.*capability.member;
   }
-  return {
+  json all = {
       {"name", row.name},
       {"summary", row.summary},
       {"source", row.source},
@@ -137,6 +176,10 @@ json to_json(const OptimizerRow& row) {
         {"residuals", row.requirements.residuals}}},
       {"limits", {{"variables", row.limits.variables}, {"evaluations", row.limits.evaluations}}},
       {"options", options}};
+  if (row.name == kAutoName) {
+    all["rules"] = rules_to_json();
+  }
+  return all;
 }
 
 json list_optimizers_as_json() {

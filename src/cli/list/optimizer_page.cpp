@@ -8,6 +8,8 @@
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/markdown.hpp"
 #include "optimizers/interface/capability_table.hpp"
+#include "optimizers/table/auto.hpp"
+#include "optimizers/table/auto_rules.hpp"
 
 namespace armwright {
 namespace {
@@ -125,6 +127,22 @@ std::string format_options(const OptimizerRow& row) {
     text += fmt::format("| {} | {} | {} | {} |\n", format_code(option.name),
                         format_code(to_text(option.fallback)), format_allowed(option),
                         escape_markdown(option.description));
+  }
+  return text + "\n";
+}
+
+// Of auto: what it chooses by, in the order in which the rules are tried.
+std::string format_rules_page() {
+  std::string text =
+      "## Rules\n\nThe first rule holds whose conditions are met and whose optimizer can work on "
+      "the "
+      "problem. [auto.md](../auto.md) explains them.\n\n"
+      "| rule | conditions | optimizer | why |\n|---|---|---|---|\n";
+  int number = 0;
+  for (const AutoRule& rule : load_auto_rules(find_auto_rules(""))) {
+    text +=
+        fmt::format("| {} | {} | {} | {} |\n", ++number, escape_markdown(describe_conditions(rule)),
+                    format_code(describe_used(rule)), escape_markdown(rule.why));
   }
   return text + "\n";
 }
@@ -250,7 +268,8 @@ std::string format_optimizer_page(const OptimizerRow& row) {
   return fmt::format("{}# {}\n\n{}\n\n", kGeneratedPage, format_code(row.name),
                      format_sentence(row.summary)) +
          format_facts(row) + "\n" + format_calls(row) + format_capabilities(row) +
-         format_options(row) + format_source(row) + "\n[All optimizers](README.md)\n";
+         format_options(row) + (row.name == kAutoName ? format_rules_page() : "") +
+         format_source(row) + "\n[All optimizers](README.md)\n";
 }
 
 }  // namespace armwright

@@ -290,6 +290,12 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
   if (result.unused_evaluations > 0) {
     text += fmt::format("  {}\n", describe_unused(result));
   }
+  if (!result.choice.empty()) {
+    for (const std::string& line :
+         wrap_words(sanitize(result.choice), get_text_width(Stream::out) - 2)) {
+      text += fmt::format("  {}\n", line);
+    }
+  }
   text += "\n";
   if (!result.failure.empty()) {
     text += style.red("The optimizer failed: " + sanitize(result.failure)) +

@@ -91,6 +91,8 @@ class Evaluator {
   // Returns the number of training cases per candidate. The residuals of a candidate are those of
   // its cases, one case after the other and equally many of each, then those that all cases share.
   virtual std::size_t cases() const { return 1; }
+  // Returns whether the training cases may change at all.
+  virtual bool may_change_cases() const { return false; }
   // Recommends a point as a candidate for the winner, for example the mean of a distribution. The
   // run already knows the evaluated points. The call simulates nothing and costs no budget. It
   // counts also after the budget has ended, until minimize() returns or the optimizer's process has
@@ -99,6 +101,9 @@ class Evaluator {
   // Says why the optimizer ends before the evaluator has stopped, in a few words without a period:
   // "its steps are smaller than xtol_rel". The last call before minimize() returns counts.
   virtual void explain_end(std::string_view /*reason*/) {}
+  // Says in two sentences which optimizer was chosen and why, for optimizers that choose among
+  // others. The last call counts.
+  virtual void explain_choice(std::string_view /*sentences*/) {}
 };
 
 }  // namespace armwright

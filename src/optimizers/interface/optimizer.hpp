@@ -123,6 +123,9 @@ class Optimizer {
   // Checks whether the options of this optimizer fit the problem. explain_unsuitable() has checked
   // before what does not depend on options. Throws Error{usage} that says what to do.
   virtual void check_problem(const ProblemDescription& /*problem*/) const {}
+  // Returns the files that its options name and that decide what it does: file -> SHA-256, as
+  // OptimizerRow::input_hashes. Throws Error{usage} and Error{io}.
+  virtual std::map<std::string, std::string> list_inputs() const { return {}; }
   // For optimizers in a process of their own: writes what the process prints to `file` from now on.
   // Removes an earlier content. Throws Error{io}.
   virtual void log_to(const std::filesystem::path& /*file*/) {}

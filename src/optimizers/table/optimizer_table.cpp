@@ -18,6 +18,7 @@
 #include "optimizers/plugins/plugin_library.hpp"
 #include "optimizers/plugins/plugin_process.hpp"
 #include "optimizers/plugins/recorded_optimizer.hpp"
+#include "optimizers/table/auto.hpp"
 #include "optimizers/table/multistart.hpp"
 #include "optimizers/turbo/turbo.hpp"
 #include "process/command_words.hpp"
@@ -65,9 +66,9 @@ bool is_in_table(std::string_view name) {
 const std::vector<OptimizerRow>& optimizer_table() {
   static const std::vector<OptimizerRow> table = [] {
     std::vector<OptimizerRow> rows;
-    for (const auto make_rows :
-         {make_ga_rows, make_cmaes_rows, make_dfls_rows, make_turbo_rows, make_ceres_rows,
-          make_nlopt_rows, make_pagmo_rows, make_random_search_rows, make_latin_hypercube_rows}) {
+    for (const auto make_rows : {make_auto_rows, make_ga_rows, make_cmaes_rows, make_dfls_rows,
+                                 make_turbo_rows, make_ceres_rows, make_nlopt_rows, make_pagmo_rows,
+                                 make_random_search_rows, make_latin_hypercube_rows}) {
       std::ranges::move(make_rows(), std::back_inserter(rows));
     }
     return rows;

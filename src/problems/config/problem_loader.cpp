@@ -56,7 +56,9 @@ const SettingTable kSetsSettings{.key = "sets",
                                  .settings = {&kSetsTraining, &kSetsValidation, &kSetsTest,
                                               &kSetsValidationCases, &kSetsTestCases}};
 
-const Setting<std::string> kRunOptimizer{"optimizer", "ga", "optimizer of armwright optimize"};
+const Setting<std::string> kRunOptimizer{
+    "optimizer", "ga",
+    "optimizer of armwright optimize (for the kinds program, command and external: auto)"};
 const Setting<std::int64_t> kRunBudget{"budget",
                                        {.lower = 0, .upper = 1e12},
                                        10000,
@@ -333,7 +335,8 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
   loaded.racing = read_racing_table(table.get_table_or_empty(kRacingSettings));
   loaded.sets = read_sets(table.get_table_or_empty(kSetsSettings), usual);
   const ConfigTable run = table.get_table_or_empty(kRunSettings);
-  loaded.optimizer = run.get(kRunOptimizer);
+  const bool is_users = kind == "program" || kind == "command" || kind == "external";
+  loaded.optimizer = run.get_or(kRunOptimizer, is_users ? "auto" : *kRunOptimizer.fallback);
   loaded.budget = run.get(kRunBudget);
   loaded.published = read_published_winner(table.get_table_or_empty(kWinnerSettings));
   if (kind == "analytic") {

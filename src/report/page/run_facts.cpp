@@ -122,6 +122,7 @@ std::string name_error(const RecordedRun& run) {
 void add_result(const RecordedRun& run, Facts& facts) {
   const RunResult& result = *run.result;
   facts.add("End", result.end_reason);
+  facts.add("Chosen optimizer", result.choice);
   facts.add("Why the optimizer ended", result.end_detail);
   facts.add("Unused evaluations",
             result.unused_evaluations > 0 ? fmt::format("{}", result.unused_evaluations) : "");

@@ -297,6 +297,9 @@ StudyOptimizer load_study_optimizer(const NamedOptimizer& named,
   try {
     optimizer.row = find_row(named, rows, reads_plugins);
     optimizer.parsed = Options::parse(optimizer.row.name, optimizer.row.options, named.options);
+    if (!reads_plugins) {
+      optimizer.row.input_hashes.merge(optimizer.row.make(optimizer.parsed)->list_inputs());
+    }
   } catch (const Error& error) {
     throw add_place(named.place, error);
   }

@@ -178,6 +178,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   }
   const auto optimizer = plan.optimizer.make(plan.options);
   optimizer->check_problem(plan.problem.problem->description());
+  plan.optimizer.input_hashes.merge(optimizer->list_inputs());
   if (has_first_selection(request.folder)) {
     plan.selection.most = 0;
   }
@@ -235,6 +236,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     describe_end(plan, evaluator, result);
   }
   evaluator.take_late_recommendations();
+  result.choice = evaluator.choice();
   result.counts = evaluator.counts();
   result.first_failure = evaluator.first_failure();
   result.least_violation = evaluator.least_violation();

@@ -154,6 +154,12 @@ void RunEvaluator::explain_end(std::string_view reason) {
   end_detail_ = sanitize(reason.substr(0, kLongest));
 }
 
+void RunEvaluator::explain_choice(std::string_view sentences) {
+  constexpr std::size_t kLongest = 1000;
+  choice_ = sanitize(sentences.substr(0, kLongest));
+  observer_.on_message(choice_);
+}
+
 EvaluationRecord RunEvaluator::make_request(std::span<const double> x) const {
   const auto& variables = problem().variables;
   if (x.size() != variables.size()) {

@@ -54,8 +54,10 @@ class RunEvaluator final : public Evaluator {
   bool grow_cases() override;
   std::uint64_t case_changes() const override { return case_changes_; }
   std::size_t cases() const override { return block_.numbers.size(); }
+  bool may_change_cases() const override { return plan_.schedule.changes_cases(); }
   void recommend(std::span<const double> x) override;
   void explain_end(std::string_view reason) override;
+  void explain_choice(std::string_view sentences) override;
 
   bool budget_spent() const { return budget_spent_; }
   const RunCounts& counts() const { return counts_; }
@@ -73,6 +75,8 @@ class RunEvaluator final : public Evaluator {
   void take_late_recommendations();
   // Returns why the optimizer says that it ended; empty if it does not say.
   const std::string& end_detail() const { return end_detail_; }
+  // Returns which optimizer it says that it chose, and why; empty if it chooses none.
+  const std::string& choice() const { return choice_; }
   // To be called after the optimizer has failed. Counts and keeps the recorded evaluations that the
   // optimizer has not asked for, also those behind a gap, as if it had. An attempt that fails
   // earlier than a former one therefore loses none of its evaluations. (Recommendations before the
@@ -119,6 +123,7 @@ class RunEvaluator final : public Evaluator {
   std::uint64_t replayed_cases_ = 0;  // of the evaluations in counts_.replayed
   std::string first_failure_;
   std::string end_detail_;
+  std::string choice_;
   std::vector<double> late_;  // recommended after the end of the budget, one after the other
   std::optional<LateRecommendations> recorded_late_;
   std::optional<double> least_violation_;

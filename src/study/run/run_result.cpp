@@ -291,6 +291,9 @@ std::string to_json(const RunResult& result) {
   if (result.counts.abandoned > 0) {  // as in results from versions without racing
     j["counts"]["abandoned"] = result.counts.abandoned;
   }
+  if (!result.choice.empty()) {
+    j["choice"] = result.choice;
+  }
   if (!result.end_detail.empty()) {
     j["end_detail"] = result.end_detail;
   }
@@ -332,6 +335,7 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     result.seed = whole_from_json(j.at("seed"));
     result.tracking = j.at("tracking");
     result.end_reason = j.at("end_reason");
+    result.choice = j.value("choice", std::string());
     result.end_detail = j.value("end_detail", std::string());
     result.unused_evaluations =
         whole_from_json<std::int64_t>(j.value("unused_evaluations", json(0U)));

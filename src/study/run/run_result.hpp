@@ -45,6 +45,8 @@ struct RunResult {
   // have paid for. Empty and 0 if that is not known, and in results of runs that version 1.0 began.
   std::string end_detail;
   std::int64_t unused_evaluations = 0;
+  // Which optimizer one that chooses has chosen, and why, in two sentences. Empty for all others.
+  std::string choice;
   std::string failure;        // how the optimizer failed; empty if it did not
   std::string first_failure;  // the reason of the first evaluation without objectives, if any
   RunCounts counts;           // `replayed` is not recorded

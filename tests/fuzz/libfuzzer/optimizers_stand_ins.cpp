@@ -9,10 +9,14 @@
 #include "optimizers/pagmo/pagmo_backend.hpp"
 #include "optimizers/plugins/plugin_library.hpp"
 #include "optimizers/plugins/plugin_process.hpp"
+#include "optimizers/table/auto.hpp"
 #include "optimizers/turbo/turbo.hpp"
 
 namespace armwright {
 
+std::vector<OptimizerRow> make_auto_rows() {
+  return {};
+}
 std::vector<OptimizerRow> make_cmaes_rows() {
   return {};
 }

@@ -116,7 +116,7 @@ TEST(OptimizerTable, HoldsTheBuiltInOptimizers) {
   EXPECT_EQ(find_optimizer("random").name, "random");
   EXPECT_THAT(
       usage_error_of([] { find_optimizer("gaa"); }),
-      testing::StartsWith("unknown optimizer 'gaa'; did you mean 'ga'? Valid: ga, ga:simple, "));
+      testing::StartsWith("unknown optimizer 'gaa'; did you mean 'ga'? Valid: auto, ga, ga:simple, "));
 }
 
 }  // namespace

@@ -1,0 +1,143 @@
+#include "optimizers/table/auto.hpp"
+
+#include <fmt/format.h>
+
+#include "base/file.hpp"
+#include "base/hash.hpp"
+#include "optimizers/interface/treated_problem.hpp"
+#include "optimizers/table/auto_probe.hpp"
+#include "optimizers/table/auto_rules.hpp"
+
+namespace armwright {
+namespace {
+
+// The evaluator of the chosen optimizer: gives it the variables as it can treat them.
+class ChosenEvaluator : public Evaluator {
+ public:
+  ChosenEvaluator(Evaluator& evaluator, const Capabilities& capabilities)
+      : evaluator_(evaluator), treated_(evaluator.problem(), capabilities) {}
+
+  const ProblemDescription& problem() const override { return treated_.description(); }
+
+  std::vector<Score> evaluate(std::span<const std::vector<double>> points) override {
+    return settle_all(points, [&](const auto& settled) { return evaluator_.evaluate(settled); });
+  }
+  std::vector<Score> evaluate_with_jacobian(std::span<const std::vector<double>> points) override {
+    return settle_all(
+        points, [&](const auto& settled) { return evaluator_.evaluate_with_jacobian(settled); });
+  }
+
+  bool stopped() const override { return evaluator_.stopped(); }
+  std::int64_t remaining() const override { return evaluator_.remaining(); }
+  // auto itself has begun the first generation.
+  void begin_generation() override {
+    if (!is_first_) {
+      evaluator_.begin_generation();
+    }
+    is_first_ = false;
+  }
+  std::uint64_t case_changes() const override { return evaluator_.case_changes(); }
+  bool may_change_cases() const override { return evaluator_.may_change_cases(); }
+  void recommend(std::span<const double> x) override { evaluator_.recommend(settle(x).x); }
+  void explain_end(std::string_view reason) override { evaluator_.explain_end(reason); }
+
+ private:
+  TreatedProblem::Point settle(std::span<const double> x) const {
+    if (x.size() != problem().variables.size()) {
+      throw OptimizerFailure(
+          fmt::format("a point of {} numbers was asked for; there are {} "
+                      "decision variables",
+                      x.size(), problem().variables.size()));
+    }
+    return treated_.settle(x);
+  }
+
+  template <class Evaluate>
+  std::vector<Score> settle_all(std::span<const std::vector<double>> points,
+                                const Evaluate& evaluate) const {
+    std::vector<std::vector<double>> settled;
+    std::vector<bool> clipped;
+    for (const std::vector<double>& point : points) {
+      TreatedProblem::Point one = settle(point);
+      settled.push_back(std::move(one.x));
+      clipped.push_back(one.clipped);
+    }
+    std::vector<Score> scores = evaluate(settled);
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      scores[i].clipped = clipped[i];
+    }
+    return scores;
+  }
+
+  Evaluator& evaluator_;
+  TreatedProblem treated_;
+  bool is_first_ = true;
+};
+
+class Auto : public Optimizer {
+ public:
+  explicit Auto(const Options& options) : rules_(options.get_text("rules")) {}
+
+  void minimize(Evaluator& evaluator, std::uint64_t seed) override {
+    const std::vector<AutoRule> rules = load_auto_rules(find_auto_rules(rules_));
+    AutoFeatures features = calc_auto_features(evaluator.problem(), evaluator.remaining(),
+                                               evaluator.may_change_cases());
+    evaluator.begin_generation();
+    const AutoRule& rule = choose_rule(rules, features, evaluator.problem(),
+                                       [&] { return is_rugged(evaluator, seed); });
+    evaluator.explain_choice(fmt::format("auto chose {} for {}. {}", describe_used(rule),
+                                         describe_features(features), rule.why));
+    const auto chosen =
+        rule.row.make(Options::parse(rule.row.name, rule.row.options, rule.options));
+    ChosenEvaluator inner(evaluator, rule.row.capabilities);
+    chosen->check_problem(inner.problem());
+    if (!log_.empty()) {
+      chosen->log_to(log_);
+    }
+    chosen->minimize(inner, seed);
+  }
+
+  void check_problem(const ProblemDescription& /*problem*/) const override {
+    load_auto_rules(find_auto_rules(rules_));
+  }
+  std::map<std::string, std::string> list_inputs() const override {
+    const std::filesystem::path file = find_auto_rules(rules_);
+    const std::string name = rules_.empty() ? file.filename().string() : rules_;
+    constexpr std::size_t kLimit_bytes = std::size_t{1} << 20;
+    return {{name, calc_sha256_hex(read_file(file, kLimit_bytes))}};
+  }
+  void log_to(const std::filesystem::path& file) override { log_ = file; }
+
+ private:
+  std::string rules_;  // a path; empty: the shipped rules
+  std::filesystem::path log_;
+};
+
+}  // namespace
+
+std::vector<OptimizerRow> make_auto_rows() {
+  return {{
+      .name = kAutoName,
+      .summary = "Chooses another optimizer by rules about the problem and the budget, and runs it",
+      .source = "Rice 1976, The algorithm selection problem",
+      .capabilities = {.bounds = true,
+                       .constraints = true,
+                       .multi_objective = true,
+                       .batch = true,
+                       .noisy = true,
+                       .residuals = true,
+                       .stochastic = true,
+                       .generations = true,
+                       .paced = true,
+                       .integer = true,
+                       .categorical = true},
+      .options = {{.name = "rules",
+                   .description = "file of rules in place of the shipped ones (docs/auto.md)",
+                   .fallback = std::string()}},
+      .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
+        return std::make_unique<Auto>(options);
+      },
+  }};
+}
+
+}  // namespace armwright
