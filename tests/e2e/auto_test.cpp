@@ -48,14 +48,14 @@ TEST_F(CliAuto, AnyNumberOfThreadsGivesTheSameResult) {
 }
 
 TEST_F(CliAuto, RulesOfTheUserHoldAndARunWithOthersIsRefused) {
-  write_rules("random");
+  write_rules("ga");
   const std::vector<std::string> words = {"optimize", "sphere",           "--optimizer", "auto",
                                           "--opt",    "rules=rules.toml", "--budget",    "30"};
   const Outcome made = run(words);
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_THAT(made.err, HasSubstr("auto chose random for 10 variables, 1 objective, 30 "
+  EXPECT_THAT(made.err, HasSubstr("auto chose ga for 10 variables, 1 objective, 30 "
                                   "evaluations and residuals. It is ours."));
-  write_rules("ga");
+  write_rules("cmaes");
   const Outcome changed = run(words);
   EXPECT_EQ(changed.exit_code, 2);
   EXPECT_THAT(changed.err, HasSubstr("the input 'rules.toml' has changed"));

@@ -250,7 +250,7 @@ std::vector<AutoRule> load_auto_rules(const std::filesystem::path& file) {
   if (!narrow.empty()) {
     tables.back().refuse(kRuleUse,
                          fmt::format("the last rule must have an optimizer for every problem, as "
-                                     "cmaes, ga or random: {}",
+                                     "cmaes or ga: {}",
                                      narrow));
   }
   return rules;

@@ -114,9 +114,9 @@ TEST(Seed, FoldsWithoutLosingSmallOnes) {
 TEST(OptimizerTable, HoldsTheBuiltInOptimizers) {
   EXPECT_THAT(optimizer_names(), testing::IsSupersetOf({"ga", "random"}));
   EXPECT_EQ(find_optimizer("random").name, "random");
-  EXPECT_THAT(
-      usage_error_of([] { find_optimizer("gaa"); }),
-      testing::StartsWith("unknown optimizer 'gaa'; did you mean 'ga'? Valid: auto, ga, ga:simple, "));
+  EXPECT_THAT(usage_error_of([] { find_optimizer("gaa"); }),
+              testing::StartsWith(
+                  "unknown optimizer 'gaa'; did you mean 'ga'? Valid: auto, ga, ga:simple, "));
 }
 
 }  // namespace
