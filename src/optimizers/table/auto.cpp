@@ -36,7 +36,9 @@ class ChosenEvaluator : public Evaluator {
     }
     is_first_ = false;
   }
+  bool grow_cases() override { return evaluator_.grow_cases(); }
   std::uint64_t case_changes() const override { return evaluator_.case_changes(); }
+  std::size_t cases() const override { return evaluator_.cases(); }
   bool may_change_cases() const override { return evaluator_.may_change_cases(); }
   void recommend(std::span<const double> x) override { evaluator_.recommend(settle(x).x); }
   void explain_end(std::string_view reason) override { evaluator_.explain_end(reason); }
