@@ -29,12 +29,11 @@ TEST_F(CliAuto, SaysWhatItChoseAndTheResultKeepsIt) {
   const Outcome made = run({"optimize", "branin", "--optimizer", "auto", "--budget", "60"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const std::string choice =
-      "auto chose cmaes with surrogate=quadratic for 2 variables, 1 "
-      "objective and 60 evaluations. Its model saves ";
+      "auto chose turbo for 2 variables, 1 objective and 60 evaluations. With so few evaluations";
   EXPECT_THAT(made.err, HasSubstr(choice));
   const std::string result = read_text(folder_ / "results/branin-auto-seed1/result.json");
   EXPECT_THAT(json::parse(result).at("choice").get<std::string>(), testing::StartsWith(choice));
-  EXPECT_THAT(run({"show", "results/branin-auto-seed1"}).out, HasSubstr("auto chose cmaes with"));
+  EXPECT_THAT(run({"show", "results/branin-auto-seed1"}).out, HasSubstr("auto chose turbo for"));
 }
 
 TEST_F(CliAuto, AnyNumberOfThreadsGivesTheSameResult) {

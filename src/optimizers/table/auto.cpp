@@ -120,7 +120,7 @@ class Auto : public Optimizer {
 std::vector<OptimizerRow> make_auto_rows() {
   return {{
       .name = kAutoName,
-      .summary = "Chooses another optimizer by rules about the problem and the budget, and runs it",
+      .summary = "Chooses another optimizer by rules about the problem and the budget",
       .source = "Rice 1976, The algorithm selection problem",
       .capabilities = {.bounds = true,
                        .constraints = true,

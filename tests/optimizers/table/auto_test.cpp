@@ -217,12 +217,13 @@ TEST(ShippedAutoRules, EveryRuleIsChosenForSomeProblem) {
   fit.has_residuals = true;
   add(fit, 500);
   add(arm, 19);
+  add(make_description(), 201);
   add(make_description(26), 500);
 #ifdef ARMWRIGHT_WITH_PAGMO
   EXPECT_EQ(chosen.front(), "pagmo:maco");
 #endif
   chosen.erase(chosen.begin());
-  EXPECT_THAT(chosen, ElementsAre("cmaes", "dfls", "multistart:dfls",
+  EXPECT_THAT(chosen, ElementsAre("cmaes", "dfls", "multistart:dfls", "turbo",
                                   "cmaes with surrogate=quadratic", "cmaes"));
 }
 
