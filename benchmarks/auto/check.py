@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Checks the optimizer `auto` on problems that its rules were not made with.
 
-    benchmarks/auto/check.py run FOLDER [--budgets 200,1000,5000] [--replicates 10] [--jobs 2]
-    benchmarks/auto/check.py table FOLDER
+    benchmarks/auto/check.py run FOLDER [--check second] [--budgets 200,1000,5000] [--replicates 10] [--jobs 2]
+    benchmarks/auto/check.py table FOLDER [--check second]
+
+The rules have been changed after the first check. The second check has problems that they were not made with.
 
 `run` builds the users' problems with g++ and runs one study per problem and budget: auto beside a pool of optimizers.
 Cells that are complete are not run again. `table` prints Markdown. A cell is *good* if two things hold:
@@ -32,10 +34,10 @@ MOST_TURBO = 200  # evaluations
 
 # The users' problems are libraries that are built from these sources.
 USERS = {"speed-control": ROOT / "examples/own_program/speed_control_library.cpp", "kinetics": HERE / "kinetics.cpp",
-         "cooling": HERE / "cooling.cpp", "chain": HERE / "chain.cpp"}
+         "cooling": HERE / "cooling.cpp", "chain": HERE / "chain.cpp", "suspension": HERE / "suspension.cpp"}
 ARM = ["sets.validation_cases=20", "sets.test_cases=50"]
 # name, label, settings, has residuals, minimum (None: the best value of all runs), resolution
-PROBLEMS = [
+FIRST = [
     ("hartmann6", "hartmann6", [], False, -3.322368011415515, 1e-8),
     ("constrained", "constrained", [], False, -44.0, 1e-8),
     ("ellipsoid-int", "ellipsoid-int", [], True, 0.0, 1e-8),
@@ -45,6 +47,19 @@ PROBLEMS = [
     ("robot", "planar2", ["robot.urdf=planar2.urdf"] + ARM, True, None, 1e-3),
     ("chain", "chain", [], False, None, 1e-8),
 ]
+ARM_OF_THE_THESIS = ["physics.engine=articulated", "task.ik_bug=false"] + ARM
+SECOND = [
+    ("branin", "branin", [], False, 0.39788735772973816, 1e-8),
+    ("sphere", "sphere", [], True, 0.0, 1e-8),
+    ("rastrigin", "rastrigin-4", ["function.dimension=4"], True, 0.0, 1e-8),
+    ("ackley", "ackley-5", ["function.dimension=5"], False, 0.0, 1e-8),
+    ("suspension", "suspension", [], False, None, 1e-8),
+    ("q2-e3", "q2-e3", ARM_OF_THE_THESIS, True, None, 1e-4),
+    ("q3-load", "q3-load", ARM_OF_THE_THESIS, True, None, 1e-4),
+    ("robot", "arm7", ["robot.urdf=arm7.urdf"] + ARM, True, None, 1e-3),
+]
+CHECKS = {"first": FIRST, "second": SECOND}
+ON_TWO_CASES = {"planar2", "q2-e3", "q3-load", "arm7"}
 
 
 def build(folder):
@@ -65,18 +80,18 @@ def write_study(path, problem, library, budget, replicates):
     text += "start_spread = 1.0\n" if not settings else ""
     pool = list(POOL) + ["auto"] + (["turbo"] if budget <= MOST_TURBO else []) + (["dfls"] if has_residuals else [])
     text += f"optimizers = {quote(pool)}\n"
-    if label == "planar2":
+    if label in ON_TWO_CASES:
         text += 'schedule = "fixed:2"\n'
     text += f"[[problem]]\nname = {quote(library or name)}\nlabel = {quote(label)}\nset = {quote(settings)}\n"
     text += "".join(f"{key} = {quote(value)}\n" for key, value in [("[[optimizer]]\nname", SURROGATE["name"])] + list(SURROGATE.items())[1:])
     path.write_text(text, encoding="utf-8")
 
 
-def run(folder, budgets, replicates, jobs):
+def run(problems, folder, budgets, replicates, jobs):
     folder.mkdir(parents=True, exist_ok=True)
     libraries = build(folder)
     for budget in budgets:
-        for problem in PROBLEMS:
+        for problem in problems:
             label = problem[1]
             study = folder / f"{label}-{budget}"
             file = folder / f"{label}-{budget}.toml"
@@ -125,9 +140,9 @@ def judge(study, known, resolution):
             "gaps": gaps, "replicates": len(values["auto"])}
 
 
-def make_table(folder):
+def make_table(problems, folder):
     rows, good, plain, near, uncorrected = [], 0, 0, 0, 0
-    for _, label, _, _, minimum, resolution in PROBLEMS:
+    for _, label, _, _, minimum, resolution in problems:
         studies = {int(path.name.rsplit("-", 1)[1]): path for path in folder.glob(f"{label}-*") if (path / "tables/pairs.csv").exists()}
         known = minimum if minimum is not None else min(
             (float(row["value"]) for path in studies.values() for row in read_csv(path / "tables/cells.csv") if row["value"]), default=0.0)
@@ -152,14 +167,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("task", choices=["run", "table"])
     parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--check", choices=sorted(CHECKS), default="second")
     parser.add_argument("--budgets", default="200,1000,5000")
     parser.add_argument("--replicates", type=int, default=10)
     parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()
     if arguments.task == "run":
-        run(arguments.folder, [int(budget) for budget in arguments.budgets.split(",")], arguments.replicates, arguments.jobs)
+        run(CHECKS[arguments.check], arguments.folder, [int(budget) for budget in arguments.budgets.split(",")], arguments.replicates, arguments.jobs)
     else:
-        print(make_table(arguments.folder), end="")
+        print(make_table(CHECKS[arguments.check], arguments.folder), end="")
 
 
 if __name__ == "__main__":
