@@ -135,8 +135,7 @@ std::string format_options(const OptimizerRow& row) {
 std::string format_rules_page() {
   std::string text =
       "## Rules\n\nThe first rule holds whose conditions are met and whose optimizer can work on "
-      "the "
-      "problem. [auto.md](../auto.md) explains them.\n\n"
+      "the problem. [auto.md](../auto.md) explains them.\n\n"
       "| rule | conditions | optimizer | why |\n|---|---|---|---|\n";
   int number = 0;
   for (const AutoRule& rule : load_auto_rules(find_auto_rules(""))) {

@@ -13,7 +13,7 @@ class Dfls : public Optimizer {
                   .smallest_radius = options.get_number("smallest_radius"),
                   .restarts = static_cast<int>(options.get_integer("restarts")),
                   .exact = options.get_bool("jacobian"),
-                  .may_be_rough = options.get_bool("power_laws")} {}
+                  .power_laws = options.get_bool("power_laws")} {}
 
   void check_problem(const ProblemDescription& problem) const override {
     if (settings_.exact) {
@@ -72,8 +72,7 @@ std::vector<OptimizerRow> make_dfls_rows() {
            {.name = "power_laws",
             .description =
                 "where every variable is logarithmic, model residuals that do not change their "
-                "sign "
-                "as products of powers of the variables, and restart earlier and farther away",
+                "sign as products of powers of the variables, and restart earlier and farther away",
             .fallback = true}},
       .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
         return std::make_unique<Dfls>(options);

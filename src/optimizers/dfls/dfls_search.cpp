@@ -94,7 +94,7 @@ class DflsSearch {
       : settings_(settings),
         function_(evaluator),
         places_(function_.space()),
-        is_rough_(settings.may_be_rough && has_logarithms(evaluator.problem().variables)),
+        is_rough_(settings.power_laws && has_logarithms(evaluator.problem().variables)),
         limit_(is_rough_ ? std::max(settings.smallest_radius, kRoughLimit * settings.radius)
                          : settings.smallest_radius) {}
 

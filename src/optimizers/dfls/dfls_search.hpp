@@ -44,7 +44,7 @@ struct DflsSettings {
   double smallest_radius = 1e-7;  // share of the box
   int restarts = 10;              // at most
   bool exact = false;             // use the problem's derivatives
-  bool may_be_rough = true;       // use power laws if every variable is logarithmic
+  bool power_laws = true;         // use them if every variable is logarithmic
 };
 
 // Searches until the evaluator stops or the search has converged; says why it ends. The problem has

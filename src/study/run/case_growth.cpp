@@ -38,7 +38,7 @@ bool CaseGrowth::grow(std::uint64_t cases_left) {
   const double wanted = std::max(cases_ + 1.0, std::round(cases_ * factor_));
   const int next = static_cast<int>(std::min(wanted, static_cast<double>(most_)));
   const double noise = calc_mean_and_error(case_objectives_).standard_error;
-  // Of one case the noise is unknown, and may be larger than every gain. If no design is feasible
+  // The noise of one case is unknown and may be larger than every gain. If no design is feasible
   // yet, the gain is no number, and the search goes on.
   const bool is_gain = case_objectives_.empty() || (!std::isnan(noise) && !(gain < noise));
   if (is_gain || (n + 1) * static_cast<std::uint64_t>(next) > cases_left) {

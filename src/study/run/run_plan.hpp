@@ -46,7 +46,8 @@ struct RunPlan {
 // generations; those that grow need these or the capability `growing`.
 bool takes_schedule(const OptimizerRow& optimizer, const Schedule& schedule);
 
-// Returns the problem's own schedule. If the optimizer cannot take that, returns the schedule of the first `fixed_cases` cases for every candidate.
+// Returns the problem's own schedule. If the optimizer cannot take that, returns the schedule
+// of the first `fixed_cases` cases for every candidate.
 Schedule choose_schedule(const LoadedProblem& problem, const OptimizerRow& optimizer);
 
 // Returns whether the optimizer gets residuals. For others they are neither made nor recorded.
