@@ -53,7 +53,7 @@ TEST_F(Excite, WritesAMotionThatIsWithinItsLimitsAndBetterThanItsStart) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2002);
   EXPECT_THAT(read("motion/trajectory.yaml"),
               AllOf(HasSubstr("joint_names:\n  - \"shoulder\"\n"),
-                    HasSubstr("velocities: [0.000000, 0.000000]"),
+                    HasSubstr("velocities: [0.000000000, 0.000000000]"),
                     HasSubstr("time_from_start: {sec: 19, nanosec: 900000000}")));
 }
 

@@ -22,9 +22,10 @@
 #include "cli/views/result_view.hpp"
 #include "problems/config/design_file.hpp"
 #include "problems/config/path_survey.hpp"
-#include "problems/user/user_problem.hpp"
+#include "problems/config/problem_readers.hpp"
 #include "study/run/derived_files.hpp"
 #include "study/run/json_values.hpp"
+#include "study/run/winner_record.hpp"
 
 namespace armwright {
 namespace {
@@ -37,6 +38,7 @@ constexpr const char* kEvaluateExamples = R"(Examples:
   armwright evaluate table-a10 --problem q2-e6 --set task.load_kg=20 --json
   armwright evaluate start --robot my.urdf         # the start design for an arm of your own, before tuning
   armwright evaluate table-a5 --problem q1-complex --trajectory arm.csv --trajectory-case 7
+  armwright evaluate start --robot my.urdf --motion trajectory.yaml   # do the controllers follow a planned motion?
 
 Terms: a test case is a sequence of points that the target visits, in the frame of the robot's base. The error of a
 point is the largest distance between tip and target while the target rests there. The error of a case, the error at
@@ -59,6 +61,13 @@ struct EvaluateOptions {
   std::string csv;
   std::string trajectory;
   std::string trajectory_case;
+  std::string motion;
+};
+
+// How an arm follows a given motion.
+struct Following {
+  TrackingResult result;
+  std::optional<double> error_without_limits_m;
 };
 
 struct EvaluatedDesign {
@@ -67,7 +76,54 @@ struct EvaluatedDesign {
   ChosenCases cases;
   DesignEvaluation evaluation;
   std::vector<ShownRequirement> requirements;
+  std::optional<Following> following;
 };
+
+// Returns the largest |q - target| of a joint (rad or m).
+double find_joint_error(const TrackingResult& result, std::size_t joint) {
+  double largest = 0;
+  for (const TrajectorySample& sample : result.trajectory) {
+    largest = std::max(largest, std::abs(sample.q[joint] - sample.target_q[joint]));
+  }
+  return largest;
+}
+
+json make_following(const EvaluatedDesign& evaluated) {
+  const Following& following = *evaluated.following;
+  const RobotModel& robot = evaluated.problem.tracking()->config().robot;
+  json joints = json::array();
+  for (std::size_t i = 0; i < following.result.peak_effort.size(); ++i) {
+    joints.push_back({{"joint", sanitize(robot.joints[i].name)},
+                      {"largest_error", find_joint_error(following.result, i)},
+                      {"peak_effort", following.result.peak_effort[i]},
+                      {"saturated_share", following.result.saturated_share[i]}});
+  }
+  return {{"joints", std::move(joints)},
+          {"mean_error_without_limits_m", to_json_value(following.error_without_limits_m)}};
+}
+
+std::string format_following(const EvaluatedDesign& evaluated, const Style& style) {
+  const Following& following = *evaluated.following;
+  const RobotModel& robot = evaluated.problem.tracking()->config().robot;
+  Table table({{"joint", false}, {"largest error"}, {"peak effort"}, {"at its limit"}});
+  for (std::size_t i = 0; i < following.result.peak_effort.size(); ++i) {
+    const Joint& joint = robot.joints[i];
+    const bool turns = joint.kind == JointKind::revolute;
+    table.add_row({sanitize(joint.name),
+                   format_quantity(find_joint_error(following.result, i), turns ? "rad" : "m"),
+                   format_quantity(following.result.peak_effort[i], get_effort_unit(joint.kind)),
+                   fmt::format("{:.3g} %", 100 * following.result.saturated_share[i])});
+  }
+  std::string text = style.bold("How the joints follow the motion") + "\n" + table.format(style, 2);
+  const auto error_m = get_error(following.result);
+  if (error_m && following.error_without_limits_m) {
+    text += fmt::format(
+        "\n  Without effort limits the error would be {} mm, so the limits cost {} mm.\n",
+        format_mm(*following.error_without_limits_m),
+        format_mm(*error_m - *following.error_without_limits_m));
+  }
+  return text;
+}
 
 std::string format_json(const EvaluatedDesign& evaluated) {
   json cases = json::array();
@@ -104,6 +160,9 @@ std::string format_json(const EvaluatedDesign& evaluated) {
   };
   add_motion(evaluation.motion, evaluation.efforts, summary);
   json all = {{"cases", cases}, {"summary", summary}};
+  if (evaluated.following) {
+    all["motion"] = make_following(evaluated);
+  }
   if (!evaluated.requirements.empty()) {
     all["requirements"] = requirements_to_json(evaluated.requirements);
   }
@@ -193,6 +252,9 @@ std::string format_text(const EvaluatedDesign& evaluated, const Style& style) {
   if (!evaluated.requirements.empty()) {
     text += format_requirements(evaluated.requirements, style) + "\n";
   }
+  if (evaluated.following) {
+    return text + format_following(evaluated, style);
+  }
   return text + style.bold("Error against the length of the move") + "\n" +
          format_profile(evaluated, style);
 }
@@ -206,14 +268,15 @@ bool is_arm_design(const std::string& design) {
   }
 }
 
-// Returns the problem if it is one of the user's own, without an arm.
+// Returns the problem if its designs are values of variables: one of the user's own, or a planned
+// motion.
 std::optional<LoadedProblem> load_own_problem(const EvaluateOptions& options) {
   if (options.problem.empty() || !options.overrides.robot.empty()) {
     return std::nullopt;
   }
   try {
     LoadedProblem problem = load_problem(options.problem, options.overrides.get());
-    if (find_user_description(*problem.problem) != nullptr) {
+    if (has_values(*problem.problem)) {
       return problem;
     }
   } catch (const Error&) {
@@ -223,6 +286,20 @@ std::optional<LoadedProblem> load_own_problem(const EvaluateOptions& options) {
     }
   }
   return std::nullopt;
+}
+
+// Simulates the design on the motion, and likewise with motors that are not limited.
+Following follow(const TrackingProblem& problem, const ArmDesign& design, const TestSet& motion) {
+  Following following{.result = problem.track(design, motion, 0, {.trajectory = true}),
+                      .error_without_limits_m = std::nullopt};
+  ArmDesign strong = design;
+  constexpr double kStronger = 1e6;
+  for (JointDrive& drive : strong.joints) {
+    drive.limits.min *= kStronger;
+    drive.limits.max *= kStronger;
+  }
+  following.error_without_limits_m = get_error(problem.track(strong, motion, 0));
+  return following;
 }
 
 int run_evaluate(const EvaluateOptions& options, Session& session) {
@@ -238,10 +315,12 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
   }
   const unsigned jobs = parse_jobs(options.jobs);
   if (const auto own = load_own_problem(options)) {
-    if (!options.csv.empty() || !options.trajectory.empty() || !options.cases.test_cases.empty()) {
-      throw Error(ErrorKind::usage,
-                  "--csv, --trajectory and --test-cases are for arms; use --json for a problem "
-                  "without an arm");
+    if (!options.csv.empty() || !options.trajectory.empty() || !options.motion.empty() ||
+        !options.cases.test_cases.empty()) {
+      throw Error(
+          ErrorKind::usage,
+          "--csv, --trajectory, --motion and --test-cases are for arms; use --json for a problem "
+          "without an arm");
     }
     return evaluate_own(*own,
                         {.design = options.design,
@@ -257,8 +336,21 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
                               options.overrides.get(), options.quiet);
   const TrackingProblem& tracking = require_tracking(problem);
   tracking.check_design(design.design);
-  ChosenCases cases = choose_cases(problem, options.cases);
-  cases.motion = true;
+  if (!options.motion.empty() && !(options.cases.test_cases.empty() &&
+                                   options.cases.test_set.empty() && options.cases.cases.empty())) {
+    throw Error(
+        ErrorKind::usage,
+        "--motion FILE is the one test case; leave out --test-cases, --test-set and --cases");
+  }
+  ChosenCases cases =
+      options.motion.empty()
+          ? choose_cases(problem, options.cases)
+          : ChosenCases{TestSet::make_repeated(
+                            "the motion " + sanitize(options.motion),
+                            read_motion_case(options.motion, tracking.make_robot(design.design),
+                                             tracking.make_task(design.design))),
+                        1};
+  cases.motion = options.motion.empty();
   std::uint64_t traced = 0;
   if (!options.trajectory.empty()) {
     const auto most = static_cast<std::int64_t>(cases.set.size().value_or(1'000'000'000)) - 1;
@@ -281,8 +373,11 @@ int run_evaluate(const EvaluateOptions& options, Session& session) {
   }
   report_failures(list_failures(evaluation->results), "");
   auto requirements = judge_evaluation(tracking, *evaluation);
-  const EvaluatedDesign evaluated{std::move(design), std::move(problem), std::move(cases),
-                                  std::move(*evaluation), std::move(requirements)};
+  EvaluatedDesign evaluated{std::move(design),      std::move(problem),      std::move(cases),
+                            std::move(*evaluation), std::move(requirements), std::nullopt};
+  if (!options.motion.empty()) {
+    evaluated.following = follow(tracking, evaluated.design.design, evaluated.cases.set);
+  }
   if (!options.csv.empty()) {
     write_output(options.csv, format_csv(evaluated.evaluation));
   }
@@ -317,6 +412,11 @@ void add_evaluate(CLI::App& app, Session& session) {
   options->overrides.add_to(*command);
   options->cases.add_to(*command);
   add_jobs_flag(*command, options->jobs);
+  command
+      ->add_option("--motion", options->motion,
+                   "Follow this motion in place of test cases: motion.csv or trajectory.yaml of a\n"
+                   "run that planned one, or a JointTrajectory of ROS 2 (YAML)")
+      ->type_name("FILE");
   command->add_flag("--json", options->json, "Print everything as JSON")->group("Output");
   command->add_option("--csv", options->csv, "Write one line per case; - is standard output")
       ->type_name("FILE")

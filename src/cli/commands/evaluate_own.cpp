@@ -6,6 +6,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 
 #include "base/text.hpp"
 #include "cli/commands/commands.hpp"
@@ -16,6 +17,7 @@
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/design_and_problem.hpp"
 #include "problems/config/values_file.hpp"
+#include "problems/motion/motion_problem.hpp"
 #include "study/executor/case_executor.hpp"
 
 namespace armwright {
@@ -33,6 +35,7 @@ struct Evaluated {
   std::vector<double> x;
   Evaluation evaluation;
   std::vector<FailedCase> failures;
+  std::optional<double> least_time_s;  // of a planned motion, along its path
 };
 
 // Returns the value of a constraint's quantity, or g if it has no limit.
@@ -68,12 +71,30 @@ std::string format_own_json(const LoadedProblem& problem, const CaseBlock& block
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
     all["metrics"][description.metrics[i].name] = evaluation.metrics[i];
   }
+  if (evaluated.least_time_s) {
+    all["least_time_s"] = *evaluated.least_time_s;
+  }
   for (const FailedCase& failure : evaluated.failures) {
     all["failures"].push_back({{"case", failure.number},
                                {"status", failure.status},
                                {"reason", sanitize(failure.reason)}});
   }
   return all.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+// Says how much faster the arm could move along the path of a planned motion.
+std::string describe_bound(const LoadedProblem& problem, const Evaluated& evaluated) {
+  if (!evaluated.least_time_s) {
+    return "";
+  }
+  const auto& metrics = problem.problem->description().metrics;
+  const auto duration = std::ranges::find(metrics, std::string("duration"), &Quantity::name);
+  const double duration_s =
+      evaluated.evaluation.metrics[static_cast<std::size_t>(duration - metrics.begin())];
+  return fmt::format(
+      "\n  Within the limits on speed, acceleration and effort, the arm could move along the same "
+      "path in {} s. This motion takes {:.3g} times as long.\n",
+      format_significant(*evaluated.least_time_s, 4), duration_s / *evaluated.least_time_s);
 }
 
 std::string format_own_text(const LoadedProblem& problem, const CaseBlock& block,
@@ -99,7 +120,7 @@ std::string format_own_text(const LoadedProblem& problem, const CaseBlock& block
   table.add_row({"failed cases", fmt::format("{}", evaluated.failures.size()), "", ""});
   return style.bold(fmt::format("{}: {} of {}", sanitize(problem.name),
                                 format_count(block.numbers.size(), "case"), sanitize(block.set))) +
-         "\n\n" + table.format(style, 2);
+         "\n\n" + table.format(style, 2) + describe_bound(problem, evaluated);
 }
 
 }  // namespace
@@ -142,6 +163,12 @@ int evaluate_own(const LoadedProblem& loaded, const OwnEvaluation& options, Sess
   if (!is_done) {
     write_message(fmt::format("{}; nothing was written", describe_stop(session.stop.reason())));
     return get_stop_code(session.stop.reason());
+  }
+  if (const MotionProblem* motion = find_motion(problem);
+      motion != nullptr && evaluated.failures.empty()) {
+    std::string reason;
+    const auto plan = motion->assess(evaluated.x, motion->config().samples, reason);
+    evaluated.least_time_s = motion->calc_bound(*plan);
   }
   if (!options.quiet) {
     constexpr std::size_t kMostNamed = 5;

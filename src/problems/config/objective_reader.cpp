@@ -11,14 +11,6 @@ namespace {
 constexpr Range kPositive{.lower = 0, .upper = 1e12, .lower_open = true};
 constexpr Range kWeight{.lower = 0, .upper = 1e6};
 
-const Setting<std::string> kObjectiveKind{
-    "kind",
-    // in the order of the enum
-    one_of({"error", "error_and_torque", "error_vs_torque", "torque_with_error_limit",
-            "error_with_torque_limit"}),
-    "error",
-    "what is minimised; error_vs_torque minimises both as two objectives, the others are one "
-    "number"};
 const Setting<bool> kObjectiveLogarithm{
     "logarithm", false,
     "whether the natural logarithm of the objective is minimised; the minimiser is the same"};
@@ -89,13 +81,34 @@ void read_term(const ConfigTable& table, const Setting<double>& weight_setting,
 
 }  // namespace
 
+const Setting<std::string> kObjectiveKind{
+    "kind",
+    // in the order of the enum
+    one_of({"error", "error_and_torque", "error_vs_torque", "torque_with_error_limit",
+            "error_with_torque_limit"}),
+    "error",
+    "what is minimised; error_vs_torque minimises both as two objectives, the others are one "
+    "number. For the kind motion: sum (the default) or front"};
+
+const Setting<std::vector<std::string>> kObjectiveQuantities{
+    "quantities", kNoDefault,
+    "for the kind motion: what is minimised, of duration, jerk, energy, peak_torque, rms_torque, "
+    "clearance (made large), deflection and tool_speed (default: duration)"};
+const Setting<std::vector<double>> kObjectiveWeights{
+    "weights", Range{.lower = 0, .upper = 1e12}, std::vector<double>{},
+    "one weight per quantity, in their weighted sum (default: 1)"};
+const Setting<std::vector<double>> kObjectiveScales{
+    "scales", Range{.lower = 0, .upper = 1e12, .lower_open = true}, std::vector<double>{},
+    "what of each quantity counts 1 in that sum (default: 1)"};
+
 const SettingTable kObjectiveSettings{
     .key = "objective",
     .settings = {&kObjectiveKind, &kObjectiveLogarithm, &kObjectiveStatistic, &kObjectiveCvarShare,
                  &kObjectiveFailurePenalty, &kObjectiveTorqueWeight, &kObjectiveTorqueScale,
                  &kObjectiveErrorScale, &kObjectiveEnergyWeight, &kObjectiveEnergyScale,
                  &kObjectiveDurationWeight, &kObjectiveDurationScale, &kObjectiveErrorLimit,
-                 &kObjectiveTorqueLimit}};
+                 &kObjectiveTorqueLimit, &kObjectiveQuantities, &kObjectiveWeights,
+                 &kObjectiveScales}};
 
 TrackingObjective read_objective(const ConfigTable& table) {
   using Kind = TrackingObjective::Kind;

@@ -23,14 +23,14 @@ const Setting<std::string> kTitle{"title", kNoDefault,
 const Setting<std::string> kDescription{"description", "", "some lines more"};
 const Setting<std::string> kProblemKind{
     "kind",
-    one_of(
-        {"tracking", "analytic", "program", "command", "external", "identification", "excitation"}),
+    one_of({"tracking", "analytic", "program", "command", "external", "identification",
+            "excitation", "motion"}),
     kNoDefault,
     "tracking: a robot follows a moving target; analytic: a function with a known optimum; "
     "program: a problem of your own that a program computes; command: one that a command line "
     "computes, case by case; external: one whose results you hand over (armwright ask); "
     "identification: a robot's parameters are found in recorded motions; excitation: a motion is "
-    "found that tells them"};
+    "found that tells them; motion: a motion through given points is planned"};
 const Setting<std::string> kProblemName{
     "name", kNoDefault,
     "name of the problem and of its runs' folders (default: the file's name); {robot} in it stands "
@@ -286,7 +286,8 @@ const SettingTable& problem_settings() {
                  &kFunctionSettings,     &kProgramSettings,       &kCommandSettings,
                  &kUserVariableSettings, &kUserObjectiveSettings, &kUserConstraintSettings,
                  &kUserMetricSettings,   &kUserCasesSettings,     &kIdentificationSettings,
-                 &kExcitationSettings}};
+                 &kExcitationSettings,   &kMotionSettings,        &kObstacleSettings,
+                 &kTubeSettings}};
   return settings;
 }
 
@@ -313,7 +314,7 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
   table.get(kDescription);
   const std::string kind = table.get(kProblemKind);
   CaseSets usual;
-  if (kind == "analytic" || kind == "excitation") {  // every case is the same
+  if (kind == "analytic" || kind == "excitation" || kind == "motion") {  // every case is the same
     usual.validation_cases = 1;
     usual.test_cases = 1;
   }
@@ -354,8 +355,8 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
     sets.settle(kSetsTestCases, loaded.sets.test_cases);
     loaded.schedule = {};
     loaded.schedule.cases = static_cast<int>(loaded.sets.training_cases);
-  } else if (kind == "excitation") {
-    load_excitation(table, loaded);
+  } else if (kind == "excitation" || kind == "motion") {
+    (kind == "motion" ? load_motion : load_excitation)(table, loaded);
     table.settle(kProblemName, loaded.name);
     settle_program(table, loaded);
   } else {

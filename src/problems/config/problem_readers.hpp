@@ -25,6 +25,7 @@
 #include "problems/tracking/tracking_config.hpp"
 #include "sim/engines/engine_table.hpp"
 #include "sim/identification/fitted_plant.hpp"
+#include "sim/kinematics/obstacle.hpp"
 
 namespace armwright {
 
@@ -129,6 +130,14 @@ extern const SettingTable kExcitationSettings;
 // whose limits do not say what motions are allowed.
 void load_excitation(const ConfigTable& table, LoadedProblem& loaded);
 
+// motion_reader.cpp: [motion], [[obstacle]] and [tubes]: a motion that is planned
+
+extern const SettingTable kMotionSettings, kObstacleSettings, kTubeSettings;
+std::vector<Obstacle> read_obstacles(const std::vector<ConfigTable>& tables);
+// Sets the problem, its single case and the hashes of its inputs. Throws Error{bad_data} if the arm
+// cannot reach a point.
+void load_motion(const ConfigTable& table, LoadedProblem& loaded);
+
 // engine_reader.cpp: [physics]
 
 extern const SettingTable kPhysicsSettings;
@@ -231,9 +240,20 @@ TestCase parse_path(std::string_view text, const std::string& name, const Tracki
 // Lets the target stay at the end of a continuous path for the task's rest_s.
 void add_rest(const TrackingTask& task, TestCase& path);
 
+// motion_case.cpp
+
+// Reads a motion (problems/logs/motion_file.hpp) as a case of the arm: a continuous path with the
+// joint positions of each control period, and the task's rest at its end. The rates and accelerations
+// of a file without them are those of a cubic spline. Throws what read_motion_file() throws.
+TestCase read_motion_case(const std::filesystem::path& file, const RobotModel& robot,
+                          const TrackingTask& task);
+
 // objective_reader.cpp: [objective]
 
 extern const SettingTable kObjectiveSettings;
+extern const Setting<std::string> kObjectiveKind;
+extern const Setting<std::vector<std::string>> kObjectiveQuantities;
+extern const Setting<std::vector<double>> kObjectiveWeights, kObjectiveScales;
 TrackingObjective read_objective(const ConfigTable& table);
 // Refuses, in `table`, limits that no design within the bounds can meet, or that every design
 // meets.

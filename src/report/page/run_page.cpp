@@ -201,6 +201,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
       {"failure_reasons", make_failure_reasons(run)},
       {"importance", make_importance(run)},
       {"record", nullptr},
+      {"record_limits", nullptr},
       {"files", json::array()},
       {"identification", nullptr},
       {"arm", nullptr}};
@@ -209,6 +210,7 @@ json make_page(const RecordedRun& run, const PageOptions& options, PageSimulator
   } else {
     page["test"] = make_test_errors(run, {});
     add_winner_record(run, page, notes);
+    add_planned_motion(run, page, notes);
     add_identification(run, page, notes);
   }
   page["training"] =

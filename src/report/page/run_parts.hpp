@@ -71,4 +71,9 @@ void add_winner_record(const RecordedRun& run, nlohmann::json& page,
 void add_identification(const RecordedRun& run, nlohmann::json& page,
                         std::vector<std::string>& notes);
 
+// Adds the arm that moves as planned, and record_limits, the limits of the signals by their names, if
+// the run planned a motion.
+void add_planned_motion(const RecordedRun& run, nlohmann::json& page,
+                        std::vector<std::string>& notes);
+
 }  // namespace armwright

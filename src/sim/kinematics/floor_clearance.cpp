@@ -7,7 +7,6 @@
 namespace armwright {
 namespace {
 
-constexpr double kCapsuleOfLength = 0.05;
 constexpr int kHeightSamples = 8;
 // A place whose height differs by less than this fraction of the arm's length does not move up or
 // down.

@@ -19,6 +19,9 @@
 
 namespace armwright {
 
+// The radius of a link's capsule, as a share of the arm's length.
+inline constexpr double kCapsuleOfLength = 0.05;
+
 // Returns the arm's length from its first joint to the tip (m): the sum of the distances between
 // neighbouring joints, and of the ranges of prismatic joints.
 double calc_arm_length_m(const RobotModel& robot);

@@ -32,6 +32,8 @@ struct TestCase {
   std::vector<Eigen::Vector3d> points_m;  // the first one is the start, at rest; at least two
   // The tool's orientation at each point: its frame in the world. Empty: as the task says.
   std::vector<Eigen::Quaterniond> turns = {};
+  // The joint positions at each point (rad or m, one per joint). Empty: inverse kinematics finds them.
+  std::vector<std::vector<double>> joints = {};
   // True if the target does not stop at the points: it is at point k after k control periods.
   bool continuous = false;
 };

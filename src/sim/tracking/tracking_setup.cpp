@@ -360,15 +360,25 @@ class TrackingSetup::NumericPath {
   std::vector<Eigen::Vector3d> positions_m_;  // of the target, one per distinct step
 };
 
+void TrackingSetup::take_joints(const TestCase& test_case, TargetTable& table) const {
+  table.start_positions = test_case.joints.front();
+  for (std::size_t k = 1; k < test_case.joints.size(); ++k) {
+    table.joint_positions.insert(table.joint_positions.end(), test_case.joints[k].begin(),
+                                 test_case.joints[k].end());
+  }
+}
+
 void TrackingSetup::solve_numerically(std::span<const TestCase> test_cases,
+                                      std::span<const std::size_t> searched,
                                       std::span<TargetTable> tables) const {
   // A case that ends leaves its lane to the next one.
   std::vector<std::unique_ptr<NumericPath>> paths;
   std::vector<NumericKinematics::Approach*> searches;
   std::size_t begun = 0;
   for (int looks = 0;; ++looks) {
-    for (; begun < test_cases.size() && paths.size() < postures::kLanes; ++begun) {
-      paths.push_back(std::make_unique<NumericPath>(*this, test_cases[begun], tables[begun]));
+    for (; begun < searched.size() && paths.size() < postures::kLanes; ++begun) {
+      const std::size_t i = searched[begun];
+      paths.push_back(std::make_unique<NumericPath>(*this, test_cases[i], tables[i]));
     }
     if (paths.empty()) {
       return;
@@ -387,16 +397,19 @@ void TrackingSetup::solve_numerically(std::span<const TestCase> test_cases,
 
 std::vector<TargetTable> TrackingSetup::make_targets(std::span<const TestCase> test_cases) const {
   std::vector<TargetTable> tables(test_cases.size());
+  std::vector<std::size_t> searched;
   for (std::size_t i = 0; i < tables.size(); ++i) {
     tables[i].joints = robot_.joint_count();
     make_timeline(test_cases[i], tables[i]);
-    if (closed_form_) {
+    if (!test_cases[i].joints.empty()) {
+      take_joints(test_cases[i], tables[i]);
+    } else if (closed_form_) {
       solve_closed_form(test_cases[i], tables[i]);
+    } else {
+      searched.push_back(i);
     }
   }
-  if (!closed_form_) {
-    solve_numerically(test_cases, tables);
-  }
+  solve_numerically(test_cases, searched, tables);
   for (TargetTable& table : tables) {
     if (!table.unreachable.empty()) {
       continue;

@@ -52,7 +52,12 @@ class TrackingSetup {
   targets::Move make_move(const Segment& segment) const;
   void make_timeline(const TestCase& test_case, TargetTable& table) const;
   void solve_closed_form(const TestCase& test_case, TargetTable& table) const;
-  void solve_numerically(std::span<const TestCase> test_cases, std::span<TargetTable> tables) const;
+  // Takes the joint positions that the case gives. The case must be continuous.
+  void take_joints(const TestCase& test_case, TargetTable& table) const;
+  // Solves the cases with these indices.
+  void solve_numerically(std::span<const TestCase> test_cases,
+                         std::span<const std::size_t> searched,
+                         std::span<TargetTable> tables) const;
   // Computes the efforts that the task wants in the table, from its joint positions
   // (feed_forward.cpp).
   void fill_efforts(TargetTable& table) const;

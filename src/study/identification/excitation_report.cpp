@@ -8,6 +8,7 @@
 
 #include "base/random.hpp"
 #include "base/text.hpp"
+#include "problems/logs/motion_file.hpp"
 
 namespace armwright {
 namespace {
@@ -37,13 +38,9 @@ std::string write_numbers(const Eigen::MatrixXd& rows, Index row, const char* se
   return text;
 }
 
-// Returns numbers as YAML, which takes those without a point for integers.
-std::string write_list(const Eigen::MatrixXd& rows, Index row) {
-  std::string text;
-  for (Index i = 0; i < rows.cols(); ++i) {
-    text += fmt::format("{}{:.6f}", i == 0 ? "" : ", ", rows(row, i));
-  }
-  return "[" + text + "]";
+MotionSamples make_samples(const AssessedMotion& motion) {
+  return {std::vector<double>(motion.times_s.begin(), motion.times_s.end()),
+          motion.motion.positions, motion.motion.rates, motion.motion.accelerations};
 }
 
 // Returns the rates of a smooth signal: central differences, and one-sided ones at its ends.
@@ -67,43 +64,15 @@ Eigen::VectorXd calc_effort_noise(const Eigen::MatrixXd& efforts) {
 }
 
 std::string write_motion(const ExcitationProblem& problem, const AssessedMotion& motion) {
-  const RobotModel& robot = problem.config().robot;
-  std::string text = "time_s" + write_heads(robot, "position", "rad", "m") +
-                     write_heads(robot, "velocity", "rad_per_s", "m_per_s") +
-                     write_heads(robot, "acceleration", "rad_per_s2", "m_per_s2") +
-                     write_heads(robot, "expected_effort", "n_m", "n") + "\n";
-  for (Index k = 0; k < motion.times_s.size(); ++k) {
-    text += fmt::format("{:.9g}", motion.times_s[k]);
-    for (const Eigen::MatrixXd* rows : {&motion.motion.positions, &motion.motion.rates,
-                                        &motion.motion.accelerations, &motion.efforts}) {
-      text += "," + write_numbers(*rows, k, ",");
-    }
-    text += "\n";
-  }
-  return text;
+  return write_motion_csv(problem.config().robot, make_samples(motion), motion.efforts);
 }
 
 std::string write_trajectory(const ExcitationProblem& problem, std::span<const double> x) {
   const ExcitationConfig& config = problem.config();
-  const AssessedMotion motion = problem.assess(
-      x, count_samples(problem, kTrajectoryPoints * config.harmonics / config.period_s));
-  std::string text =
-      "# A trajectory_msgs/msg/JointTrajectory. The robot must stand at the first point before.\n"
-      "joint_names:\n";
-  for (const Joint& joint : config.robot.joints) {
-    text += "  - " + json(joint.name).dump() + "\n";
-  }
-  text += "points:\n";
-  for (Index k = 0; k < motion.times_s.size(); ++k) {
-    const auto time_ns = static_cast<std::int64_t>(std::llround(1e9 * motion.times_s[k]));
-    text += fmt::format(
-        "  - positions: {}\n    velocities: {}\n    accelerations: {}\n"
-        "    time_from_start: {{sec: {}, nanosec: {}}}\n",
-        write_list(motion.motion.positions, k), write_list(motion.motion.rates, k),
-        write_list(motion.motion.accelerations, k), time_ns / 1'000'000'000,
-        time_ns % 1'000'000'000);
-  }
-  return text;
+  return write_joint_trajectory(
+      config.robot,
+      make_samples(problem.assess(
+          x, count_samples(problem, kTrajectoryPoints * config.harmonics / config.period_s))));
 }
 
 std::string write_simulated_log(const RobotModel& robot, double gravity_m_per_s2,

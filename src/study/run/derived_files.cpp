@@ -130,7 +130,8 @@ std::string make_winner_toml(const RunPlan& plan, const RunResult& result,
   return toml;
 }
 
-// Returns the winner of a user's problem, with its objectives on the test set in the user's signs.
+// Returns the winner as values of its variables, with its objectives on the test set, in the user's
+// signs for a problem of the user.
 std::string make_values_toml(const RunPlan& plan, const RunResult& result,
                              const std::vector<double>& x) {
   const ProblemDescription& problem = plan.problem.problem->description();
@@ -140,9 +141,11 @@ std::string make_values_toml(const RunPlan& plan, const RunResult& result,
                             plan.optimizer.name, plan.seed);
   file.variables = list_values(problem.variables, x);
   for (std::size_t i = 0; i < result.test.objectives.size(); ++i) {
-    const UserObjective& own = find_user_description(*plan.problem.problem)->objectives[i];
+    const UserDescription* own = find_user_description(*plan.problem.problem);
+    const bool is_maximised = own != nullptr && own->objectives[i].is_maximised;
     file.objectives.push_back(
-        {own.quantity, own.is_maximised ? -result.test.objectives[i] : result.test.objectives[i]});
+        {own != nullptr ? own->objectives[i].quantity : problem.objectives[i],
+         is_maximised ? -result.test.objectives[i] : result.test.objectives[i]});
   }
   return to_toml(file);
 }
@@ -199,7 +202,7 @@ std::string make_trajectory_csv(const TrackingProblem& problem, const TrackingRe
 }
 
 bool are_derived_files_there(const RunFolder& folder, const RunPlan& plan, DerivedFiles derived) {
-  const bool is_own = find_user_description(*plan.problem.problem) != nullptr;
+  const bool is_own = has_values(*plan.problem.problem);
   const auto is_there = [&](const char* name) { return path_exists(folder.path() / name); };
   if (!is_there("result.json")) {
     return false;
@@ -265,7 +268,7 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
       write_file_atomically(files, "winner-trajectory.csv", make_trajectory_csv(tracking, motion));
     }
   }
-  if (result.winner && find_user_description(*plan.problem.problem) != nullptr) {
+  if (result.winner && has_values(*plan.problem.problem)) {
     const auto& x = result.judged[*result.winner].candidate.x;
     write_file_atomically(files, "winner.toml", make_values_toml(plan, result, x));
     if (all && has_record(plan)) {

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/folder_checksums.hpp"
 #include "base/text.hpp"
+#include "problems/motion/motion_problem.hpp"
 #include "problems/user/user_problem.hpp"
 
 namespace armwright {
@@ -34,9 +35,14 @@ std::string make_title(const Quantity& quantity) {
 
 }  // namespace
 
+bool has_values(const Problem& problem) {
+  return find_user_description(problem) != nullptr || find_motion(problem) != nullptr;
+}
+
 bool has_record(const RunPlan& plan) {
   const UserDescription* description = find_user_description(*plan.problem.problem);
-  return description != nullptr && description->has_records && !plan.selection.evaluated_only;
+  return find_motion(*plan.problem.problem) != nullptr ||
+         (description != nullptr && description->has_records && !plan.selection.evaluated_only);
 }
 
 bool are_record_files_there(const RunFolder& folder, const RunPlan& plan) {

@@ -15,8 +15,11 @@ namespace armwright {
 
 inline constexpr const char* kWinnerRecord = "winner-record.csv";
 
-// Returns whether the run records its winner: the problem is the user's, and says that it has
-// records. A run of ask and tell has none, because armwright does not simulate it.
+// Returns whether winner.toml holds the values of decision variables: for users' problems and planned
+// motions. That of an arm holds a design.
+bool has_values(const Problem& problem);
+// Returns whether the run records its winner: the problem plans a motion, or is the user's and says
+// that it has records. A run of ask and tell has none, because armwright does not simulate it.
 bool has_record(const RunPlan& plan);
 // Returns whether the folder has what write_record_files() has written, or needs none.
 bool are_record_files_there(const RunFolder& folder, const RunPlan& plan);

@@ -323,10 +323,10 @@ TEST(BadConfig, WhatIsMissingIsNamed) {
   const ProblemFolder folder;
   EXPECT_EQ(folder.refusal_of(""),
             "p.toml:1: kind is missing; it must be one of these strings: tracking, analytic, "
-            "program, command, external, identification, excitation");
+            "program, command, external, identification, excitation, motion");
   EXPECT_EQ(folder.refusal_of("kind = 'trackin'"),
             "p.toml:1: unknown kind 'trackin'; did you mean 'tracking'? Valid: tracking, analytic, "
-            "program, command, external, identification, excitation");
+            "program, command, external, identification, excitation, motion");
   EXPECT_EQ(folder.refusal_of("kind = 'tracking'"),
             "p.toml:1: robot is missing; it must be a table, [robot]");
   EXPECT_EQ(folder.refusal_of("kind = 'tracking'\n[robot]\n"),

@@ -69,6 +69,23 @@ constexpr const char* kIdentificationProblem =
     "kind = \"identification\"\n[robot]\nurdf = \"planar2\"\n[identification]\nlogs = []\n";
 constexpr const char* kExcitationProblem =
     "kind = \"excitation\"\n[robot]\nurdf = \"planar2\"\n[excitation]\n";
+constexpr const char* kMotionProblem = R"(kind = "motion"
+[robot]
+urdf = "planar2"
+[motion]
+[[motion.point]]
+joints = [0, 0]
+[[motion.point]]
+joints = [1, 0.5]
+[[obstacle]]
+kind = "sphere"
+centre_m = [5, 5, 5]
+radius_m = 0.1
+[tubes]
+diameter_m = [0.06]
+wall_m = [0.003]
+[objective]
+)";
 constexpr const char* kProgramProblem = "kind = \"program\"\n[program]\ncommand = \"exec:true\"\n";
 constexpr const char* kCommandProblem = R"(kind = "command"
 [command]
@@ -116,6 +133,7 @@ Specimen make_specimen(const std::string& path) {
       {"control.resolution_m", {"control.interface=velocity"}},
       {"identification.payload_com_m", {"identification.payload_kg=1"}},
       {"excitation.payload_com_m", {"excitation.payload_kg=1"}},
+      {"motion.payload_com_m", {"motion.payload_kg=1"}},
       {"racing.first_cases", {"racing.kind=halving"}},
       {"racing.eta", {"racing.kind=halving"}},
       {"racing.margin", {"racing.kind=abandonment"}},
@@ -139,6 +157,22 @@ Specimen make_specimen(const std::string& path) {
     specimen.text = kIdentificationProblem;
   } else if (path.starts_with("excitation.")) {
     specimen.text = kExcitationProblem;
+  } else if (path.starts_with("motion.") || path.starts_with("obstacle[]") ||
+             path.starts_with("tubes.") || path == "objective.quantities" ||
+             path == "objective.weights" || path == "objective.scales") {
+    specimen.text = kMotionProblem;
+    const auto replace = [&](const std::string& what, const std::string& with) {
+      specimen.text.replace(specimen.text.find(what), what.size(), with);
+    };
+    if (path.find(".tool_") != std::string::npos) {
+      replace("joints = [0, 0]", "tool_m = [0.9, 0, 1]");
+    } else if (path == "obstacle[].edges_m" || path == "obstacle[].rpy_rad") {
+      replace("kind = \"sphere\"", "kind = \"box\"\nedges_m = [1, 1, 1]");
+    } else if (path == "obstacle[].height_m") {
+      replace("kind = \"sphere\"", "kind = \"cylinder\"");
+    } else if (path == "obstacle[].from_m" || path == "obstacle[].to_m") {
+      replace("kind = \"sphere\"", "kind = \"capsule\"\nfrom_m = [5, 5, 5]\nto_m = [6, 6, 6]");
+    }
   } else if (const auto part = path.substr(0, path.find_first_of(".["));
              part == "command" || part == "variable" || part == "constraint" || part == "metric" ||
              part == "cases" || path.starts_with("objective[]")) {
@@ -271,6 +305,8 @@ TEST(Settings, DefaultsAreThoseOfAProblemThatLeavesThemOut) {
         one.path.starts_with("racing.") || one.path.starts_with("program.") ||
         one.path.starts_with("command.") || one.path.starts_with("cases.") ||
         one.path.starts_with("identification.") || one.path.starts_with("excitation.") ||
+        one.path.starts_with("motion.") || one.path.starts_with("tubes.") ||
+        one.path == "objective.weights" || one.path == "objective.scales" ||
         one.path.find("[]") != std::string::npos || one.path == "control.bandwidth_hz" ||
         one.path == "control.delay_s" || one.path.starts_with("control.resolution_") ||
         one.path == "schedule.factor" || one.path == "objective.cvar_share" ||

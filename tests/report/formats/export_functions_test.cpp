@@ -36,9 +36,12 @@ TEST(FunctionNumbers, AreGivenToEveryShippedProblemOnce) {
   std::set<std::size_t> numbers;
   for (const ProblemTitle& problem : list_problems()) {
     const auto number = find_function_id(problem.name);
-    // These three are for any robot, and each is a problem of its own with every robot.
-    const std::set<std::string> templates = {"robot", "identify", "excite"};
-    EXPECT_EQ(number.has_value(), !templates.contains(problem.name)) << problem.name;
+    // Three are for any robot, and each is a problem of its own with every robot. The others came after
+    // 1.0, and COCO's numbers end soon: they are numbered in each export.
+    const std::set<std::string> unnumbered = {"robot",      "identify",         "excite",
+                                              "gasparetto", "gasparetto-front", "saravanan-puma",
+                                              "shiakolas"};
+    EXPECT_EQ(number.has_value(), !unnumbered.contains(problem.name)) << problem.name;
     if (number) {
       EXPECT_GE(*number, 25u) << problem.name;
       EXPECT_LT(*number, kFirstOwnFunction) << problem.name;

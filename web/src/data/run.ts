@@ -20,6 +20,7 @@ export interface RunData extends PageBase {
   importance?: Importance | null; // null before the end of the run; pages of older versions have none
   failure_reasons: FailureReason[]; // of training evaluations, the most frequent first
   record: string | null; // winner-record.csv: signals of the winner on the first test case
+  record_limits: Record<string, number> | null; // of a planned motion: the limits of signals, by their names
   files: WinnerFile[]; // that this case left
   identification?: Identification | null; // null for other runs; pages of version 1.0 have none
   arm: ArmEvidence | null; // null if the problem is not an arm

@@ -79,7 +79,7 @@ export function make_run_tabs(data: RunData): Tab[] {
     return make_identification_tabs(data, data.identification);
   }
   const { arm, test } = data;
-  const set = data.replays[0]; // the figures over time share their cursor with this replay set
+  const set = data.record_limits === null ? data.replays[0] : undefined; // the figures over time share their cursor with this replay set
   const robot = set ? data.robots[set.robot] : undefined;
   const fitness = has_training(data) ? make_fitness_figure(data) : null;
   const has_response = arm !== null && arm.response.series.length > 0;

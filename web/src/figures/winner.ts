@@ -3,7 +3,8 @@
 import { decimate } from '../charts/decimate';
 import { make_curve_plot, make_number_axis } from '../charts/marks';
 import { shorten, shorten_all } from '../charts/names';
-import { make_line } from '../charts/parts';
+import { get_series_style, type Look } from '../charts/look';
+import { make_line, type Part } from '../charts/parts';
 import { parse_csv } from '../csv';
 import type { RunData, WinnerFile } from '../data';
 import type { Cell, Column, Figure, FilesItem, Item, TableItem, TextItem, Value } from '../model';
@@ -139,8 +140,28 @@ export function read_signals(text: string): Signal[] | null {
   return at.every((value, i) => i === 0 || value >= at[i - 1]) ? signals : null;
 }
 
+// A limit is drawn only if the signal comes nearer to it than this share.
+const kNearLimit = 0.5;
+
+// Returns the edges of the band that a signal must not leave, as dashed lines.
+function make_limit_lines(look: Look, index: number, signal: Signal, limit: number | undefined, ends: number[]): Part[] {
+  if (limit === undefined || !signal.values.some((value) => Math.abs(value) > kNearLimit * limit)) {
+    return [];
+  }
+  const style = { ...get_series_style(look, index), dash: 'dashed' as const };
+  return [limit, -limit].map((value) =>
+    make_line(
+      look,
+      index,
+      `${signal.name}: limit`,
+      ends.map((at) => [at, value]),
+      { width: 1, style },
+    ),
+  );
+}
+
 // Returns one figure per unit. All figures of a record share the pointer and the zoom.
-function make_signal_plots(id: string, title: string, signals: Signal[]): Figure[] {
+function make_signal_plots(id: string, title: string, signals: Signal[], limits: Record<string, number> = {}): Figure[] {
   const [abscissa, ...curves] = signals;
   const units = curves.map((one) => one.unit).filter((unit, i, all) => all.indexOf(unit) === i);
   return units.map((unit, u) => {
@@ -154,7 +175,9 @@ function make_signal_plots(id: string, title: string, signals: Signal[]): Figure
       kind: 'figure',
       id: u === 0 ? id : `${id}-${u + 1}`,
       title: names.length > 3 ? `${title} in ${label}` : `${title}: ${names.join(', ')}`,
-      caption: `The signals of the winner on the first test case over ${shorten(abscissa.name)}, as the problem recorded them.`,
+      caption:
+        `The signals of the winner on the first test case over ${shorten(abscissa.name)}, as the problem recorded them.` +
+        (Object.keys(limits).length > 0 ? ' Dashed lines are limits, of signals that come near to them.' : ''),
       width: 'full',
       time: { replay: id, case: () => '' },
       draw: (look, _, zoom) => {
@@ -168,7 +191,7 @@ function make_signal_plots(id: string, title: string, signals: Signal[]): Figure
           look,
           make_number_axis(look, 'x', name_axis(shorten(abscissa.name), shorten(abscissa.unit, 20)), { min: 'dataMin', max: 'dataMax' }),
           make_number_axis(look, 'y', shown.length === 1 ? name_axis(names[0], shorten(unit, 20)) : label, {}, { nameGap: 54 }),
-          shown.map((one, s) =>
+          shown.flatMap((one, s) => [
             make_line(
               look,
               s,
@@ -176,7 +199,8 @@ function make_signal_plots(id: string, title: string, signals: Signal[]): Figure
               decimate(one.values.slice(first, last)).map((i) => [abscissa.values[first + i], one.values[first + i]]),
               { width: 1.4 },
             ),
-          ),
+            ...make_limit_lines(look, s, one, limits[one.name], [abscissa.values[first], abscissa.values[last - 1]]),
+          ]),
           { grid: { left: 78, right: 24, top: 44, bottom: 48 } },
         );
       },
@@ -246,9 +270,10 @@ export function make_record_items(data: RunData): Item[] {
           files: data.files,
         };
   return ([] as Item[]).concat(
-    signals === null ? [] : make_signal_plots('winner-record', 'Signals', signals),
+    signals === null ? [] : make_signal_plots('winner-record', 'Signals', signals, data.record_limits ?? {}),
     signals === null && data.record !== null ? make_record_note(data.record) : [],
-    ...data.files.map((file, i) => (file.text === null ? [] : make_csv_items(file, i))),
+    // The file of a planned motion has the signals of its record.
+    ...data.files.map((file, i) => (file.text === null || data.record_limits !== null ? [] : make_csv_items(file, i))),
     files === null ? [] : [files],
   );
 }

@@ -1,0 +1,481 @@
+// Reads problems of the kind motion: [motion], its points, [[obstacle]] and [tubes].
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "problems/config/problem_readers.hpp"
+#include "problems/motion/motion_problem.hpp"
+#include "sim/dynamics/arm_equations.hpp"
+#include "sim/kinematics/kinematics.hpp"
+
+namespace armwright {
+namespace {
+
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+constexpr Range kLimitRange{.lower = 0, .upper = 1e9, .lower_open = true};
+constexpr Range kJointPlace{.lower = -1000, .upper = 1000};
+constexpr Range kCellPlace{.lower = -kFarthestPlace_m, .upper = kFarthestPlace_m};
+constexpr Range kSize_m{.lower = 0, .upper = kFarthestPlace_m, .lower_open = true};
+
+const Setting<std::string> kCurve{
+    "curve", curve_kind_names, "cubic",
+    "for the kind motion: cubic or quintic splines through the points, or rest: the arm rests at "
+    "each point"};
+const Setting<std::string> kEnds{
+    "ends", spline_ends_names, "rest",
+    "of cubic splines: rest (no speed and no acceleration at the ends, with two virtual knots) or "
+    "clamped (no speed)"};
+const Setting<std::string> kProfile{
+    "profile", rest_profile_names, "quintic",
+    "for the curve rest: the polynomials of degree 5 and 7, or the jerk as four constant pieces or "
+    "two sines"};
+const Setting<std::vector<double>> kIntervals{
+    "intervals_s", Range{.lower = 1e-4, .upper = 1e4}, std::vector<double>{},
+    "times between the knots, which are then no variables (default: they are variables)"};
+const Setting<double> kShortestInterval{"shortest_interval_s",
+                                        {.lower = 1e-4, .upper = 1e4},
+                                        MotionConfig{}.interval_s.lower,
+                                        "least value of an interval"};
+const Setting<double> kLongestInterval{"longest_interval_s",
+                                       {.lower = 1e-4, .upper = 1e4},
+                                       MotionConfig{}.interval_s.upper,
+                                       "largest value of an interval"};
+const Setting<int> kMotionSamples{
+    "samples",
+    {.lower = 11, .upper = 100'000},
+    static_cast<int>(MotionConfig{}.samples),
+    "even times at which efforts, clearance and the tool's speed are computed"};
+const Setting<std::vector<double>> kMotionHome{
+    "home", kJointPlace, std::vector<double>{},
+    "joint positions at which the search for a tool's pose begins (default: the point before, or "
+    "the middles of the ranges)"};
+const Setting<bool> kRangeLimit{"range_limits", MotionConfig{}.limits_range,
+                                "whether the joints' ranges are limits"};
+const Setting<bool> kRobotLimits{"robot_limits", true,
+                                 "whether the speeds and efforts of the robot's file are limits "
+                                 "where the lists below give none"};
+const Setting<std::vector<double>> kSpeedLimits{
+    "speed_limits", kLimitRange, std::vector<double>{},
+    "largest rates, rad/s or m/s: one number, or one per joint"};
+const Setting<std::vector<double>> kAccelerationLimits{
+    "acceleration_limits", kLimitRange, std::vector<double>{},
+    "largest accelerations, rad/s^2 or m/s^2, in the same way (default: none)"};
+const Setting<std::vector<double>> kJerkLimits{
+    "jerk_limits", kLimitRange, std::vector<double>{},
+    "largest jerks, rad/s^3 or m/s^3, in the same way (default: none)"};
+const Setting<std::vector<double>> kEffortLimits{"effort_limits", kLimitRange,
+                                                 std::vector<double>{},
+                                                 "largest efforts, N m or N, in the same way"};
+const Setting<double> kToolSpeedLimit{"tool_speed_limit_m_per_s", kLimitRange, kNoDefault,
+                                      "largest speed of the tip (default: none)"};
+const Setting<double> kLeastClearance{
+    "clearance_m",
+    {.lower = 0, .upper = 10},
+    kNoDefault,
+    "least distance of the links from obstacles, and from each other (default: no limit)"};
+const Setting<bool> kSelfClearance{
+    "self_clearance", false, "whether links must stay clear of each other and of the base too"};
+
+const Setting<std::vector<double>> kPointJoints{
+    "joints", kJointPlace, kNoDefault, "joint positions at the point, rad or m, one per joint"};
+const Setting<std::vector<double>> kPointTool{
+    "tool_m", kCellPlace, kNoDefault, "position of the tip at the point: x, y and z in the world"};
+const Setting<std::vector<double>> kPointToolRpy{
+    "tool_rpy_rad", kAngleRange, kNoDefault,
+    "the tool's orientation there: roll, pitch and yaw (default: free)"};
+const Setting<bool> kPointFree{"free", false,
+                               "whether the joint positions of the point are variables"};
+const SettingTable kMotionPointSettings{
+    .key = "point",
+    .is_array = true,
+    .settings = {&kPointJoints, &kPointTool, &kPointToolRpy, &kPointFree}};
+
+const Setting<std::string> kObstacleName{"name", kNoDefault, "name of the obstacle in messages"};
+const Setting<std::string> kObstacleKind{"kind", obstacle_kind_names, kNoDefault,
+                                         "its form; a cylinder stands upright"};
+const Setting<std::vector<double>> kObstacleCentre{
+    "centre_m", kCellPlace, kNoDefault, "of a sphere, box or cylinder: x, y and z in the world"};
+const Setting<double> kObstacleRadius{"radius_m", kSize_m, kNoDefault,
+                                      "of a sphere, capsule or cylinder"};
+const Setting<double> kObstacleHeight{"height_m", kSize_m, kNoDefault, "of a cylinder"};
+const Setting<std::vector<double>> kObstacleEdges{"edges_m", kSize_m, kNoDefault,
+                                                  "of a box: its three edges"};
+const Setting<std::vector<double>> kObstacleRpy{
+    "rpy_rad", kAngleRange, std::vector<double>{0, 0, 0}, "of a box: roll, pitch and yaw"};
+const Setting<std::vector<double>> kObstacleFrom{"from_m", kCellPlace, kNoDefault,
+                                                 "of a capsule: one end of its axis"};
+const Setting<std::vector<double>> kObstacleTo{"to_m", kCellPlace, kNoDefault,
+                                               "of a capsule: the other end"};
+
+const Setting<double> kYoungsModulus{"youngs_modulus_pa",
+                                     {.lower = 1e6, .upper = 1e13},
+                                     TubeMaterial{}.youngs_modulus_pa,
+                                     "of the tubes' material (default: aluminium)"};
+const Setting<double> kTubeDensity{"density_kg_per_m3",
+                                   {.lower = 1, .upper = 30'000},
+                                   TubeMaterial{}.density_kg_per_m3,
+                                   "of the tubes' material (default: aluminium)"};
+const Setting<std::vector<double>> kDiameters{
+    "diameter_m", kSize_m, kNoDefault, "outer diameters of the tubes, one number or one per link"};
+const Setting<std::vector<double>> kWalls{"wall_m", kSize_m, kNoDefault,
+                                          "walls of the tubes, in the same way"};
+const Setting<std::vector<double>> kLengthBounds{
+    "length_bounds_m", kSize_m, kNoDefault,
+    "least and largest length of each link, which is then a variable (default: as in the robot)"};
+const Setting<std::vector<double>> kDiameterBounds{
+    "diameter_bounds_m", kSize_m, kNoDefault, "the same of the outer diameters (default: fixed)"};
+const Setting<std::vector<double>> kWallBounds{"wall_bounds_m", kSize_m, kNoDefault,
+                                               "the same of the walls (default: fixed)"};
+const Setting<double> kDeflectionLimit{
+    "deflection_limit_m", kSize_m, kNoDefault,
+    "how far the tip of the stretched arm may sag under gravity across it (default: no limit)"};
+
+// Returns one number per joint: those of the setting, or else of `otherwise`.
+std::vector<double> read_per_joint(const ConfigTable& table,
+                                   const Setting<std::vector<double>>& setting, std::size_t joints,
+                                   std::vector<double> otherwise) {
+  std::vector<double> values = table.get(setting);
+  if (values.empty()) {
+    return otherwise;
+  }
+  if (values.size() == 1) {
+    values.resize(joints, values.front());
+  }
+  if (values.size() != joints) {
+    table.refuse(setting, fmt::format("it must hold one number, or {}, one per joint", joints));
+  }
+  return values;
+}
+
+std::optional<MotionBounds> read_bounds(const ConfigTable& table,
+                                        const Setting<std::vector<double>>& setting) {
+  const auto values = table.find(setting);
+  if (!values) {
+    return std::nullopt;
+  }
+  if (values->size() != 2 || (*values)[0] >= (*values)[1]) {
+    table.refuse(setting, "it must be two numbers, the smaller one first");
+  }
+  return MotionBounds{(*values)[0], (*values)[1]};
+}
+
+MotionPoint read_point(const ConfigTable& table, const RobotModel& robot) {
+  MotionPoint point;
+  const bool is_free = table.get(kPointFree);
+  const auto joints = table.find(kPointJoints);
+  if (joints.has_value() + table.has(kPointTool) + is_free != 1) {
+    table.refuse(joints                  ? kPointJoints.key
+                 : table.has(kPointTool) ? kPointTool.key
+                                         : "point",
+                 "a point has exactly one of joints, tool_m and free = true");
+  }
+  if (table.has(kPointToolRpy) && !table.has(kPointTool)) {
+    table.refuse(kPointToolRpy, "it needs tool_m beside it");
+  }
+  if (joints) {
+    if (joints->size() != robot.joint_count()) {
+      table.refuse(kPointJoints,
+                   fmt::format("it must hold {} numbers, one per joint", robot.joint_count()));
+    }
+    point.q = Eigen::Map<const Eigen::VectorXd>(joints->data(),
+                                                static_cast<Eigen::Index>(joints->size()));
+  } else if (!is_free) {
+    ToolPose pose;
+    pose.position_m = read_vector(table, kPointTool, "x, y and z in metres");
+    if (table.has(kPointToolRpy)) {
+      pose.turn = make_turn(read_vector(table, kPointToolRpy, "roll, pitch and yaw in rad"));
+      point.has_turn = true;
+    }
+    point.tool = pose;
+  }
+  return point;
+}
+
+// Refuses points that lie outside of the joints' ranges, and equal neighbours.
+void check_points(const ConfigTable& its, const std::vector<ConfigTable>& tables,
+                  const MotionConfig& config) {
+  const auto count = config.points.size();
+  if (count < 2) {
+    its.refuse(kMotionPointSettings.key,
+               "a motion needs two [[motion.point]] tables or more, the start first");
+  }
+  const auto is_free = [&](std::size_t k) { return !config.points[k].q && !config.points[k].tool; };
+  for (const std::size_t end : {std::size_t{0}, count - 1}) {
+    if (is_free(end)) {
+      tables[end].refuse(kPointFree, "the first and the last point cannot be free");
+    }
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto& q = config.points[k].q;
+    if (!q) {
+      continue;
+    }
+    for (std::size_t i = 0; i < config.robot.joint_count(); ++i) {
+      const Joint& joint = config.robot.joints[i];
+      const double value = (*q)[static_cast<Eigen::Index>(i)];
+      if (config.limits_range && (value < joint.lower || value > joint.upper)) {
+        tables[k].refuse(
+            kPointJoints,
+            fmt::format("point {}: joint '{}' is at {:g}, its range is {:g} to {:g}; move the "
+                        "point, or set motion.range_limits = false",
+                        k + 1, sanitize(joint.name), value, joint.lower, joint.upper));
+      }
+    }
+    if (k > 0 && config.points[k - 1].q && *config.points[k - 1].q == *q) {
+      tables[k].refuse(kPointJoints,
+                       fmt::format("point {} is the same as point {}; leave one out", k + 1, k));
+    }
+  }
+}
+
+// Refuses points at which the motors cannot hold the arm: no speed helps there.
+void check_holding(const std::vector<ConfigTable>& tables, const MotionConfig& config) {
+  if (!config.tubes.tubes.empty()) {
+    return;  // the arm is a variable
+  }
+  const articulated::ChainModel chain(config.robot, config.gravity_m_per_s2);
+  articulated::ArmEquations equations(chain);
+  for (std::size_t k = 0; k < config.points.size(); ++k) {
+    if (!config.points[k].q) {
+      continue;
+    }
+    const Eigen::VectorXd& q = *config.points[k].q;
+    const std::vector<double> efforts = equations.calc_holding_efforts(
+        config.robot, {q.data(), static_cast<std::size_t>(q.size())});
+    for (std::size_t i = 0; i < efforts.size(); ++i) {
+      const Joint& joint = config.robot.joints[i];
+      if (std::abs(efforts[i]) > config.limits.effort[i]) {
+        tables[k].refuse(kPointJoints,
+                         fmt::format("point {}: joint '{}' needs {:.4g} {} to hold the arm at rest "
+                                     "there, its limit is {:.4g}; no motion can pass this point",
+                                     k + 1, sanitize(joint.name), std::abs(efforts[i]),
+                                     get_effort_unit(joint.kind), config.limits.effort[i]));
+      }
+    }
+  }
+}
+
+void check_start(const std::vector<ConfigTable>& tables, const MotionConfig& config) {
+  for (std::size_t k = 0; config.clearance && k < config.points.size(); ++k) {
+    if (!config.points[k].q) {
+      continue;
+    }
+    const Eigen::VectorXd& q = *config.points[k].q;
+    const auto nearest = config.clearance->find_nearest(
+        calc_link_poses(config.robot, {q.data(), static_cast<std::size_t>(q.size())}));
+    if (nearest.distance_m < config.least_clearance_m.value_or(0)) {
+      tables[k].refuse(
+          kPointJoints,
+          fmt::format(
+              "point {}: {} are {:.4g} m apart (negative: one inside the other), and {:g} m "
+              "are asked for; move the point or the obstacle",
+              k + 1, config.clearance->describe(nearest), nearest.distance_m,
+              config.least_clearance_m.value_or(0)));
+    }
+  }
+}
+
+void read_tubes(const ConfigTable& table, MotionConfig& config) {
+  const std::size_t links = config.robot.joint_count();
+  MotionTubes& tubes = config.tubes;
+  tubes.material = {table.get(kYoungsModulus), table.get(kTubeDensity)};
+  const std::vector<double> diameters = read_per_joint(table, kDiameters, links, {});
+  const std::vector<double> walls = read_per_joint(table, kWalls, links, {});
+  tubes.length_m = read_bounds(table, kLengthBounds);
+  tubes.diameter_m = read_bounds(table, kDiameterBounds);
+  tubes.wall_m = read_bounds(table, kWallBounds);
+  config.deflection_limit_m = table.find(kDeflectionLimit);
+  for (std::size_t link = 0; link < links; ++link) {
+    const double thinnest = tubes.diameter_m ? tubes.diameter_m->lower : diameters[link];
+    const double thickest = tubes.wall_m ? tubes.wall_m->upper : walls[link];
+    if (2 * walls[link] > diameters[link] || 2 * thickest > thinnest) {
+      const bool at_start = 2 * walls[link] > diameters[link];
+      table.refuse(
+          at_start || !tubes.wall_m ? kWalls.key : kWallBounds.key,
+          fmt::format("the wall of link '{}' can be {:g} m, thicker than the radius of its tube, "
+                      "{:g} m; make it thinner",
+                      sanitize(config.robot.links[link].name), at_start ? walls[link] : thickest,
+                      (at_start ? diameters[link] : thinnest) / 2));
+    }
+    if (get_link_length_m(config.robot, link) == 0) {
+      table.refuse(kDiameters,
+                   fmt::format("the link '{}' has no length: the next joint lies in its "
+                               "own; only links with a length can be tubes",
+                               sanitize(config.robot.links[link].name)));
+    }
+    tubes.tubes.push_back({diameters[link], walls[link]});
+  }
+}
+
+void read_motion_objective(const ConfigTable& table, MotionConfig& config) {
+  config.is_front = table.get_or(kObjectiveKind.among({"sum", "front"}), "sum") == "front";
+  const std::vector<std::string> names = table.get_or(kObjectiveQuantities, {"duration"});
+  const std::vector<double> weights = table.get(kObjectiveWeights),
+                            scales = table.get(kObjectiveScales);
+  for (const auto& [setting, values] :
+       {std::pair{&kObjectiveWeights, &weights}, std::pair{&kObjectiveScales, &scales}}) {
+    if (!values->empty() && values->size() != names.size()) {
+      table.refuse(*setting,
+                   fmt::format("it must hold {} numbers, one per quantity", names.size()));
+    }
+  }
+  if (config.is_front && names.size() < 2) {
+    table.refuse(kObjectiveQuantities,
+                 "a front needs at least two quantities; for one, leave out objective.kind");
+  }
+  config.objective.clear();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto& known = motion_quantity_names();
+    const auto found = std::ranges::find(known, names[i]);
+    if (found == known.end()) {
+      table.refuse(kObjectiveQuantities, describe_unknown("quantity", names[i], known));
+    }
+    if (std::ranges::count(names, names[i]) > 1) {
+      table.refuse(kObjectiveQuantities, fmt::format("'{}' stands there twice", names[i]));
+    }
+    const auto quantity = static_cast<MotionQuantity>(found - known.begin());
+    if (quantity == MotionQuantity::clearance && !config.clearance) {
+      table.refuse(kObjectiveQuantities,
+                   "there is nothing to be clear of; add an [[obstacle]], or set "
+                   "motion.self_clearance = true");
+    }
+    if (quantity == MotionQuantity::deflection && config.tubes.tubes.empty()) {
+      table.refuse(kObjectiveQuantities, "only arms of [tubes] have a deflection");
+    }
+    config.objective.push_back(
+        {quantity, weights.empty() ? 1 : weights[i], scales.empty() ? 1 : scales[i]});
+  }
+  if (names.empty()) {
+    table.refuse(kObjectiveQuantities, "it must name at least one quantity");
+  }
+}
+
+}  // namespace
+
+const SettingTable kMotionSettings{
+    .key = "motion",
+    .settings = {&kCurve, &kEnds, &kProfile, &kIntervals, &kShortestInterval, &kLongestInterval,
+                 &kMotionSamples, &kMotionHome, &kRangeLimit, &kRobotLimits, &kSpeedLimits,
+                 &kAccelerationLimits, &kJerkLimits, &kEffortLimits, &kToolSpeedLimit,
+                 &kLeastClearance, &kSelfClearance, &kPayloadMass, &kPayloadCom},
+    .tables = {&kMotionPointSettings}};
+const SettingTable kObstacleSettings{
+    .key = "obstacle",
+    .is_array = true,
+    .settings = {&kObstacleName, &kObstacleKind, &kObstacleCentre, &kObstacleRadius,
+                 &kObstacleHeight, &kObstacleEdges, &kObstacleRpy, &kObstacleFrom, &kObstacleTo}};
+const SettingTable kTubeSettings{
+    .key = "tubes",
+    .settings = {&kYoungsModulus, &kTubeDensity, &kDiameters, &kWalls, &kLengthBounds,
+                 &kDiameterBounds, &kWallBounds, &kDeflectionLimit}};
+
+std::vector<Obstacle> read_obstacles(const std::vector<ConfigTable>& tables) {
+  std::vector<Obstacle> obstacles;
+  for (const ConfigTable& table : tables) {
+    Obstacle obstacle;
+    obstacle.name = table.get_or(kObstacleName, fmt::format("obstacle {}", obstacles.size() + 1));
+    obstacle.kind = static_cast<ObstacleKind>(table.get_choice(kObstacleKind));
+    if (obstacle.kind == ObstacleKind::capsule) {
+      obstacle.capsule = {read_vector(table, kObstacleFrom, "x, y and z in metres"),
+                          read_vector(table, kObstacleTo, "x, y and z in metres"),
+                          table.get(kObstacleRadius)};
+    } else {
+      const Eigen::Vector3d centre_m = read_vector(table, kObstacleCentre, "x, y and z in metres");
+      obstacle.pose.translation() = centre_m;
+      if (obstacle.kind == ObstacleKind::sphere) {
+        obstacle.capsule = {centre_m, centre_m, table.get(kObstacleRadius)};
+      } else if (obstacle.kind == ObstacleKind::box) {
+        obstacle.half_m = read_vector(table, kObstacleEdges, "three edges in metres") / 2;
+        obstacle.pose.linear() = make_turn(read_vector(table, kObstacleRpy, "three angles in rad"));
+      } else {
+        const double radius_m = table.get(kObstacleRadius);
+        obstacle.half_m = {radius_m, radius_m, table.get(kObstacleHeight) / 2};
+      }
+    }
+    obstacles.push_back(std::move(obstacle));
+  }
+  return obstacles;
+}
+
+void load_motion(const ConfigTable& table, LoadedProblem& loaded) {
+  MotionConfig config;
+  config.name = loaded.name;
+  config.summary = loaded.title;
+  const ConfigTable robot = table.get_table(kRobotSettings);
+  const std::filesystem::path urdf = resolve_named(robot, kRobotUrdf, "robots");
+  config.robot = read_robot(robot, loaded).robot;
+  const std::size_t joints = config.robot.joint_count();
+  const ConfigTable its = table.get_table(kMotionSettings);
+  read_payload(its, config.robot);
+  config.gravity_m_per_s2 =
+      read_physics(table.get_table_or_empty(kPhysicsSettings)).gravity_m_per_s2;
+  config.form.kind = static_cast<CurveKind>(its.get_choice(kCurve));
+  config.form.ends = static_cast<SplineEnds>(its.get_choice(kEnds));
+  config.form.profile = static_cast<RestProfile>(its.get_choice(kProfile));
+  config.home = its.get(kMotionHome);
+  if (!config.home.empty() && config.home.size() != joints) {
+    its.refuse(kMotionHome, fmt::format("it must hold {} numbers, one per joint", joints));
+  }
+  config.samples = static_cast<std::size_t>(its.get(kMotionSamples));
+  config.limits_range = its.get(kRangeLimit);
+  const std::vector<double> unlimited(joints, kUnlimited);
+  std::vector<double> speeds = unlimited, efforts = unlimited;
+  for (std::size_t i = 0; its.get(kRobotLimits) && i < joints; ++i) {
+    // A limit of 0 in a URDF stands for one that its author did not know.
+    const Joint& joint = config.robot.joints[i];
+    speeds[i] = joint.speed_limit > 0 ? joint.speed_limit : kUnlimited;
+    efforts[i] = joint.effort_limit > 0 ? joint.effort_limit : kUnlimited;
+  }
+  config.limits = {read_per_joint(its, kSpeedLimits, joints, speeds),
+                   read_per_joint(its, kAccelerationLimits, joints, unlimited),
+                   read_per_joint(its, kJerkLimits, joints, unlimited),
+                   read_per_joint(its, kEffortLimits, joints, efforts)};
+  config.tool_speed_limit_m_per_s = its.find(kToolSpeedLimit);
+  config.least_clearance_m = its.find(kLeastClearance);
+  const std::vector<ConfigTable> points = its.get_tables_or_empty(kMotionPointSettings);
+  for (const ConfigTable& point : points) {
+    config.points.push_back(read_point(point, config.robot));
+  }
+  check_points(its, points, config);
+  config.intervals_s = its.get(kIntervals);
+  const std::size_t intervals = config.form.count_intervals(config.points.size());
+  if (!config.intervals_s.empty() && config.intervals_s.size() != intervals) {
+    its.refuse(kIntervals,
+               fmt::format("it must hold {} numbers, one per interval of this curve", intervals));
+  }
+  config.interval_s = {its.get(kShortestInterval), its.get(kLongestInterval)};
+  if (config.interval_s.lower >= config.interval_s.upper) {
+    its.refuse(kLongestInterval, fmt::format("it must be above motion.shortest_interval_s, {:g} s",
+                                             config.interval_s.lower));
+  }
+  if (table.has(kTubeSettings.key)) {
+    read_tubes(table.get_table(kTubeSettings), config);
+  }
+  std::vector<Obstacle> obstacles = read_obstacles(table.get_tables_or_empty(kObstacleSettings));
+  const bool self = its.get(kSelfClearance);
+  if (config.least_clearance_m && obstacles.empty() && !self) {
+    its.refuse(kLeastClearance,
+               "there is nothing to be clear of; add an [[obstacle]], or set "
+               "motion.self_clearance = true");
+  }
+  if (!obstacles.empty() || self) {
+    std::vector<std::string> notes;
+    auto capsules = fit_link_capsules(
+        config.robot, MeshFinder(urdf.parent_path(), config.robot.reading.packages), notes);
+    config.robot.notes.insert(config.robot.notes.end(), notes.begin(), notes.end());
+    config.clearance = std::make_shared<ArmClearance>(config.robot, std::move(capsules),
+                                                      std::move(obstacles), self);
+  }
+  read_motion_objective(table.get_table_or_empty(kObjectiveSettings), config);
+  check_holding(points, config);
+  check_start(points, config);
+  name_robot_file(urdf,
+                  [&] { loaded.problem = std::make_shared<MotionProblem>(std::move(config)); });
+}
+
+}  // namespace armwright
