@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/controllers/cascade.hpp"
+#include "sim/controllers/fuzzy.hpp"
 #include "sim/controllers/neural.hpp"
 #include "sim/controllers/pi2d.hpp"
 #include "sim/controllers/pid.hpp"
@@ -16,8 +17,8 @@ template <class... Laws>
 struct LawList {};
 
 using AllLaws = LawList<Pid,  // must be the first: the kernels have it inlined
-                        PidFiltered, Pi2d, PidGravity, PidComputedTorque, Cascade, Neural,
-                        PidVelocity, PidPosition>;
+                        PidFiltered, Pi2d, PidGravity, PidComputedTorque, Cascade, Neural, Fuzzy,
+                        FuzzyReference, PidVelocity, PidPosition>;
 
 // Sets the state of a joint's controller, as hold_effort(). Gains and states are those of the joint.
 template <class V>

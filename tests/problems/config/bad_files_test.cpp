@@ -10,13 +10,13 @@ namespace armwright {
 namespace {
 
 constexpr const char* kProblems =
-    "ackley, bbob-f1, bbob-f10, bbob-f15, bbob-f2, bbob-f3, bbob-f8, branin, co-design, "
-    "constrained, ellipsoid, ellipsoid-int, excite, faithful-e6, faithful-q1, faithful-q3, "
-    "gasparetto, gasparetto-front, hartmann6, identify, initial, initial-0cm, initial-45cm, "
-    "initial-90cm, q1-complex, q1-ramp, q1-requirements, q1-step, q1-trapezoid, "
-    "q1-triangular, q2-e1, q2-e2, q2-e3, q2-e4, q2-e5, q2-e6, q2-energy, q2-error, q2-pareto, "
-    "q2-torque, q3-load, q4-speed, rastrigin, robot, robust-e6, robust-q1, robust-q3, "
-    "rosenbrock, saravanan-puma, shiakolas, sphere, sphere-int";
+    "abdessemed-fuzzy, ackley, bbob-f1, bbob-f10, bbob-f15, bbob-f2, bbob-f3, bbob-f8, "
+    "branin, co-design, constrained, ellipsoid, ellipsoid-int, excite, faithful-e6, "
+    "faithful-q1, faithful-q3, gasparetto, gasparetto-front, hartmann6, identify, initial, "
+    "initial-0cm, initial-45cm, initial-90cm, q1-complex, q1-ramp, q1-requirements, q1-step, "
+    "q1-trapezoid, q1-triangular, q2-e1, q2-e2, q2-e3, q2-e4, q2-e5, q2-e6, q2-energy, "
+    "q2-error, q2-pareto, q2-torque, q3-load, q4-speed, rastrigin, robot, robust-e6, "
+    "robust-q1, robust-q3, rosenbrock, saravanan-puma, shiakolas, sphere, sphere-int";
 constexpr const char* kOrPath = " (or the path of a .toml file)";
 
 std::string problem_refusal(const std::string& name) {
@@ -233,8 +233,8 @@ TEST(BadDesign, EveryMistakeInItsFileHasItsPlace) {
             "d.toml:6: joint[0].effort_max_n_m is -0.001" + must + ">= 0");
   EXPECT_EQ(folder.refusal_of_design("controller = 'pdi'\n" + make_joint()),
             "d.toml:1: unknown controller 'pdi'; did you mean 'pid'? Valid: pid, "
-            "pid_filtered, pi2d, pid_gravity, pid_computed_torque, cascade, neural, pid_velocity, "
-            "pid_position");
+            "pid_filtered, pi2d, pid_gravity, pid_computed_torque, cascade, neural, fuzzy, "
+            "fuzzy_reference, pid_velocity, pid_position");
   EXPECT_EQ(folder.refusal_of_design(make_joint() + "effort_n_m = 5\n"),
             "d.toml:7: unknown key joint[0].effort_n_m; did you mean 'joint[0].effort_min_n_m'? "
             "Valid here: name, p_n_m_per_rad, i_n_m_per_rad_s, d_n_m_s_per_rad, effort_min_n_m, "

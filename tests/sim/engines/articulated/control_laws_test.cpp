@@ -13,6 +13,7 @@
 #include "base/expect_error.hpp"
 #include "base/random.hpp"
 #include "sim/controllers/controller.hpp"
+#include "sim/controllers/fuzzy.hpp"
 #include "sim/controllers/neural.hpp"
 #include "sim/engines/articulated/kernels.hpp"
 #include "sim/engines/articulated/lane_block.hpp"
@@ -144,6 +145,94 @@ TEST(ControlLaws, NeuralByHand) {
   expect_steps("neural", gains, {-10, 8}, {{0.5, 0.48, first}, {0.5, 0.47, second}});
 }
 
+using FuzzyNumber = lanes::Single<double, struct FuzzyLevel>;
+
+double calc_table(double error, double rate, std::vector<double> gains) {
+  std::vector<FuzzyNumber> own(gains.begin(), gains.end());
+  return controllers::FuzzyTable::calc<FuzzyNumber>(error, rate, {own.data(), 1}).v;
+}
+
+// The definition, with all 25 rules.
+double calc_table_plainly(double error, double rate, const std::vector<double>& gains) {
+  const auto calc_set = [](double value, double span, int k) {
+    const double x = std::clamp(value / span, -1.0, 1.0);
+    return std::max(0.0, 1 - 2 * std::abs(x - 0.5 * k));
+  };
+  const auto get_weight = [&](int k, int l) {
+    const double sign = k < 0 || (k == 0 && l < 0) ? -1 : 1;
+    const int row = std::abs(k);
+    const int column = sign > 0 ? l : -l;
+    if (row == 0) {
+      return column == 0 ? 0 : sign * gains[static_cast<std::size_t>(1 + column)];
+    }
+    return sign * gains[static_cast<std::size_t>(5 * row + 1 + column)];
+  };
+  double y = 0;
+  for (int k = -2; k <= 2; ++k) {
+    for (int l = -2; l <= 2; ++l) {
+      y += calc_set(error, gains[0], k) * calc_set(rate, gains[1], l) * get_weight(k, l);
+    }
+  }
+  return y;
+}
+
+TEST(ControlLaws, FuzzyTableIsTheSumOfAllRules) {
+  RandomStream random("test/sim/fuzzy", 1);
+  std::vector<double> gains = {0.02, 0.5};
+  for (int k = 0; k < controllers::FuzzyTable::kWeightCount; ++k) {
+    gains.push_back(random.uniform(-2, 2));
+  }
+  for (int i = 0; i < 10000; ++i) {
+    const double error = random.uniform(-0.03, 0.03);
+    const double rate = random.uniform(-0.7, 0.7);
+    EXPECT_NEAR(calc_table(error, rate, gains), calc_table_plainly(error, rate, gains), 1e-14);
+    EXPECT_EQ(calc_table(error, rate, gains), -calc_table(-error, -rate, gains));
+  }
+  // The weights have the names of their rules: a small positive error and a big negative rate.
+  const auto names = controllers::FuzzyTable::kWeights;
+  EXPECT_STREQ(names[2].name, "w_ps_nb");
+  EXPECT_NEAR(calc_table(0.01, -0.5, gains), gains[4], 1e-15);
+  EXPECT_STREQ(names[0].name, "w_ze_ps");
+  EXPECT_NEAR(calc_table(0, 0.25, gains), gains[2], 1e-15);
+  EXPECT_STREQ(names[11].name, "w_pb_pb");
+  EXPECT_NEAR(calc_table(7, 7, gains), gains[13], 1e-15);
+  EXPECT_TRUE(std::isnan(calc_table(std::nan(""), 0, gains)));
+  EXPECT_TRUE(std::isnan(calc_table(0, std::nan(""), gains)));
+  gains[0] = 0;  // a span of 0 makes a switch
+  EXPECT_EQ(calc_table(0, 0, gains), 0);
+  EXPECT_NEAR(calc_table(1e-9, 0, gains), gains[11], 1e-15);
+}
+
+// w_kl = alpha c_k + beta c_l gives alpha x1 + beta x2. Rounding: some 20 products of numbers up to 3.
+TEST(ControlLaws, ALinearFuzzyTableIsPd) {
+  RandomStream random("test/sim/fuzzy", 2);
+  std::vector<double> gains(14, 0.02);
+  controllers::FuzzyTable::set_linear(1.7, -0.6, &gains[2]);
+  for (int i = 0; i < 10000; ++i) {
+    const double x1 = random.uniform(-1.5, 1.5);
+    const double x2 = random.uniform(-1.5, 1.5);
+    EXPECT_NEAR(calc_table(0.02 * x1, 0.02 * x2, gains),
+                1.7 * std::clamp(x1, -1.0, 1.0) - 0.6 * std::clamp(x2, -1.0, 1.0), 1e-14);
+  }
+}
+
+// E 0.2, R 4, L 5, h 0.1.
+TEST(ControlLaws, FuzzyByHand) {
+  std::vector<double> gains = {0.2, 4, 0.3, 0.7, -1, -0.2, 0.4, 0.9, 1, -1.5, 0, 1.1, 1.3, 2, 5};
+  expect_steps("fuzzy", gains, {-8, 8},
+               {{0.15, 0, 5 * (0.5 * 0.4 + 0.5 * 1.1)},  // x1 0.75, x2 0
+                {0.25, 0, 5 * (0.5 * 1.1 + 0.5 * 1.3)},  // x1 1, x2 0.25
+                {-0.3, 0, -8}});                         // x1 -1, x2 -1: -10, clamped
+}
+
+// P 100, I 50, D 2, E 0.2, R 4, S 0.05, h 0.1. The only rule: w_ps_ze 0.8.
+TEST(ControlLaws, FuzzyReferenceByHand) {
+  std::vector<double> gains = {100, 50, 2, 0.2, 4, 0, 0, 0, 0, 0.8, 0, 0, 0, 0, 0, 0, 0, 0.05};
+  expect_steps("fuzzy_reference", gains, {-100, 100},
+               {{0.1, 0, 14.7},       // f 0.14, S 0.014: 14 + 0.7
+                {0.15, 0, 18.525}});  // x1 0.75, x2 0.125, y 0.8 x 0.5 x 0.75: f 0.165, S 0.0305
+}
+
 TEST(ControlLaws, TanhIsWithinItsBounds) {
   using Double = lanes::Single<double, struct TestLevel>;
   using Float = lanes::Single<float, struct TestLevel>;
@@ -169,6 +258,7 @@ TEST(ControlLaws, TanhIsWithinItsBounds) {
 class EveryController : public testing::TestWithParam<std::string> {
  protected:
   const ControllerRow& row() const { return find_controller(GetParam()); }
+  bool has_integral() const { return GetParam() != "fuzzy"; }
   // The thesis's second joint before tuning.
   std::vector<double> make_gains() const {
     std::vector<double> gains(row().gains.size());
@@ -217,13 +307,13 @@ TEST_P(EveryController, StartsWithUsableGains) {
 }
 
 // For small and slow errors, a controller converted from a PID gives almost the same effort as that
-// PID, to a quarter.
+// PID, to a quarter. A law without an integral does not take over the PID's.
 TEST_P(EveryController, StartsNearThePid) {
   if (row().interface != ControlInterface::effort) {
     GTEST_SKIP() << "commands no effort";
   }
   const auto controller = make();
-  const auto pid = make_pid(270000, 700000, 30000, limits());
+  const auto pid = make_pid(270000, has_integral() ? 700000 : 0, 30000, limits());
   double largest = 0;
   double difference = 0;
   for (int k = 0; k < 100; ++k) {
@@ -269,6 +359,9 @@ TEST_P(EveryController, DoesNotWindUp) {
 
 // If it is not clamped, it integrates.
 TEST_P(EveryController, GrowsAgainstALastingError) {
+  if (!has_integral()) {
+    GTEST_SKIP() << "has no integral";
+  }
   const auto controller = make();
   double before = controller->step(0.01, 0, 0.01);
   for (int k = 0; k < 50; ++k) {
@@ -413,10 +506,31 @@ TEST_P(EveryController, IsTheSameInLanes) {
   }
   for (const std::string& name : supported_simd_names()) {
     const SimdLevel level = parse_simd(name);
-    const double worst = compare_lanes<double>(row(), make_gains(), level, limits());
+    EffortLimits own = limits();
+    if (!has_integral()) {
+      own = {own.min / 2, own.max / 2};  // some steps exceed them
+    }
+    const double worst = compare_lanes<double>(row(), make_gains(), level, own);
     // Fused or not: roundings of 2^-53 of efforts up to 1e8 before they are clamped, some hundred.
     EXPECT_LT(worst, 1e-5) << name;
     if (level == SimdLevel::scalar) {
+      EXPECT_EQ(worst, 0);
+    }
+  }
+}
+
+// Converted from a PID, its weights are 0.
+TEST(FuzzyReference, WithRulesIsTheSameInLanes) {
+  const ControllerRow& row = find_controller("fuzzy_reference");
+  std::vector<double> gains(row.gains.size());
+  row.convert({270000, 700000, 30000, 45000, 0.01}, gains.data());
+  for (std::size_t k = 5; k < 17; ++k) {
+    gains[k] = std::cos(static_cast<double>(k));
+  }
+  for (const std::string& name : supported_simd_names()) {
+    const double worst = compare_lanes<double>(row, gains, parse_simd(name), {-40000, 45000});
+    EXPECT_LT(worst, 1e-5) << name;
+    if (parse_simd(name) == SimdLevel::scalar) {
       EXPECT_EQ(worst, 0);
     }
   }
