@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "optimizers/interface/optimizer.hpp"
 #include "problems/interface/problem.hpp"
 
 namespace armwright {
@@ -36,6 +37,10 @@ class SearchSpace {
   // `lower` and `upper` lie in the box except for rounding. The result always lies in the box.
   std::vector<double> draw_between(std::span<const double> lower, std::span<const double> upper,
                                    RandomStream& random) const;
+  // Returns a first population: the start, and points that are uniform in a box around it. That box
+  // has `spread` times the size of the whole box and is cut at the bounds. `size` is at least 1.
+  std::vector<std::vector<double>> draw_population(std::size_t size, double spread,
+                                                   RandomStream& random) const;
 
  private:
   std::vector<DecisionVariable> variables_;
@@ -43,5 +48,8 @@ class SearchSpace {
   std::vector<double> upper_;
   std::vector<double> start_;
 };
+
+// Returns the option for the spread of draw_population().
+OptionSpec make_spread_option();
 
 }  // namespace armwright

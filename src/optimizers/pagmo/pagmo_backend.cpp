@@ -292,23 +292,14 @@ class PagmoOptimizer : public Optimizer {
     return population_size();
   }
 
-  // The start, and points that are uniform in a box around it. That box has `spread` times the size
-  // of the whole box and is cut at the bounds.
   pagmo::population make_population(PagmoBridge& bridge, const pagmo::problem& problem,
                                     std::uint64_t seed) const {
-    const SearchSpace& space = bridge.space();
-    std::vector<std::vector<double>> individuals = {bridge.arrange(space.start())};
     RandomStream random("optimizer/pagmo:" + method_.algorithm, seed);
-    std::vector<double> lower = space.lower();
-    std::vector<double> upper = space.upper();
     const double spread = has_option("spread") ? options_.get_number("spread") : 1;
-    for (std::size_t i = 0; i < space.dimension() && spread != 1; ++i) {
-      const double reach = 0.5 * spread * (space.upper()[i] - space.lower()[i]);
-      lower[i] = std::max(lower[i], space.start()[i] - reach);
-      upper[i] = std::min(upper[i], space.start()[i] + reach);
-    }
-    while (std::ssize(individuals) < population_size()) {
-      individuals.push_back(bridge.arrange(space.draw_between(lower, upper, random)));
+    std::vector<std::vector<double>> individuals =
+        bridge.space().draw_population(static_cast<std::size_t>(population_size()), spread, random);
+    for (std::vector<double>& individual : individuals) {
+      individual = bridge.arrange(individual);
     }
     return evaluate_population(bridge, problem, individuals, fold_seed(seed));
   }

@@ -13,6 +13,7 @@
 #include "optimizers/ceres/ceres_backend.hpp"
 #include "optimizers/cma/cma_search.hpp"
 #include "optimizers/dfls/dfls_search.hpp"
+#include "optimizers/fronts/front_generation.hpp"
 #include "optimizers/nlopt/nlopt_algorithms.hpp"
 #include "optimizers/pagmo/pagmo_backend.hpp"
 #include "optimizers/plugins/plugin_library.hpp"
@@ -66,9 +67,10 @@ bool is_in_table(std::string_view name) {
 const std::vector<OptimizerRow>& optimizer_table() {
   static const std::vector<OptimizerRow> table = [] {
     std::vector<OptimizerRow> rows;
-    for (const auto make_rows : {make_auto_rows, make_ga_rows, make_cmaes_rows, make_dfls_rows,
-                                 make_turbo_rows, make_ceres_rows, make_nlopt_rows, make_pagmo_rows,
-                                 make_random_search_rows, make_latin_hypercube_rows}) {
+    for (const auto make_rows :
+         {make_auto_rows, make_ga_rows, make_cmaes_rows, make_dfls_rows, make_turbo_rows,
+          make_front_rows, make_ceres_rows, make_nlopt_rows, make_pagmo_rows,
+          make_random_search_rows, make_latin_hypercube_rows}) {
       std::ranges::move(make_rows(), std::back_inserter(rows));
     }
     return rows;

@@ -49,7 +49,14 @@ class AnalyticProblem : public Problem {
     description_.known_optimum = instance_.minimiser;
     description_.optimum = function.minimum + instance_.f_opt;
     description_.resolution = kResolution;
-    description_.objectives = {{"f", ""}};
+    if (function.calc_objectives == nullptr) {
+      description_.objectives = {{"f", ""}};
+    } else {
+      for (int i = 0; i < function.objective_count; ++i) {
+        description_.objectives.push_back({fmt::format("f_{}", i + 1), ""});
+      }
+      description_.objective_weights.assign(description_.objectives.size(), 1.0);
+    }
     for (int i = 0; i < function.constraint_count; ++i) {
       description_.constraints.push_back({fmt::format("g_{}", i + 1), ""});
     }
@@ -69,8 +76,13 @@ class AnalyticProblem : public Problem {
       assert(jobs[job].x.size() == z.size());
       instance_.calc_z(jobs[job].x, z);
       outcomes[job].error = function_.calc_value(z) + instance_.f_opt;
+      if (function_.calc_objectives != nullptr) {
+        outcomes[job].metrics = function_.calc_objectives(z);
+      }
       if (function_.calc_constraints != nullptr) {
-        outcomes[job].metrics = function_.calc_constraints(z);
+        const std::vector<double> constraints = function_.calc_constraints(z);
+        outcomes[job].metrics.insert(outcomes[job].metrics.end(), constraints.begin(),
+                                     constraints.end());
       }
       if (jobs[job].residuals && description_.has_residuals) {
         outcomes[job].residuals = function_.calc_residuals(z);
@@ -79,36 +91,43 @@ class AnalyticProblem : public Problem {
     return outcomes;
   }
 
-  // Takes the mean over the cases that have an error. The metrics of an outcome are its constraint
-  // values.
+  // Takes the mean over the cases that have an error. The metrics of an outcome are its objectives,
+  // if there are several, and its constraint values.
   Evaluation aggregate(std::span<const double> /*x*/,
                        std::span<const CaseOutcome> outcomes) const override {
     Evaluation evaluation;
     evaluation.case_errors.reserve(outcomes.size());
     double error_sum = 0;
-    std::vector<double> constraint_sums(description_.constraints.size());
+    const std::size_t objectives =
+        function_.calc_objectives == nullptr ? 0 : description_.objectives.size();
+    std::vector<double> sums(objectives + description_.constraints.size());
     for (const CaseOutcome& outcome : outcomes) {
       if (!add_outcome(outcome, evaluation)) {
         continue;
       }
       error_sum += outcome.error;
-      assert(outcome.metrics.size() == constraint_sums.size());
-      for (std::size_t i = 0; i < constraint_sums.size(); ++i) {
-        constraint_sums[i] += outcome.metrics[i];
+      assert(outcome.metrics.size() == sums.size());
+      for (std::size_t i = 0; i < sums.size(); ++i) {
+        sums[i] += outcome.metrics[i];
       }
     }
     const double count = static_cast<double>(outcomes.size()) - evaluation.failed_cases;
     if (count > 0) {
-      evaluation.objectives = {error_sum / count};
-      for (const double sum : constraint_sums) {
-        evaluation.constraint_values.push_back(sum / count);
+      if (objectives == 0) {
+        evaluation.objectives = {error_sum / count};
+      }
+      for (std::size_t i = 0; i < sums.size(); ++i) {
+        (i < objectives ? evaluation.objectives : evaluation.constraint_values)
+            .push_back(sums[i] / count);
       }
       evaluation.residuals = collect_residuals(outcomes, count);
     }
     return evaluation;
   }
 
-  std::vector<double> penalty_objectives() const override { return {kPenalty}; }
+  std::vector<double> penalty_objectives() const override {
+    return std::vector<double>(description_.objectives.size(), kPenalty);
+  }
 
  private:
   static FunctionInstance make_instance(const AnalyticFunction& function,

@@ -12,6 +12,14 @@
 //   hartmann6   six variables, minimum -3.322368011415515
 //   constrained the Rosen-Suzuki problem with four variables: convex, three inequality constraints
 //               (two active), minimum -44 at (0, 1, 2, -1)
+// and with several objectives, all in [0, 1]^n without a shift
+//   zdt1        f_1 = x_1, f_2 = g (1 - sqrt(f_1 / g)), g = 1 + 9 sum_{i>1} x_i / (n - 1). The front
+//               is f_2 = 1 - sqrt(f_1), where all variables but the first are 0. Its hypervolume up
+//               to (1.1, 1.1) is 0.1 + 2/3 + 0.11.
+//   dtlz2       f_1 = (1 + g) cos(a_1) cos(a_2), f_2 = (1 + g) cos(a_1) sin(a_2), f_3 = (1 + g)
+//               sin(a_1), a_i = x_i pi / 2, g = sum_{i>2} (x_i - 1/2)^2. The front is the part of
+//               the unit sphere with no negative coordinate, where g = 0.
+// As one number, the objectives count as their sum.
 // The functions sphere-int and ellipsoid-int are sphere and ellipsoid with whole numbers as the
 // second half of the variables (floor(n/2) of them). Source: Hamano, Saito, Nomura and Shirakawa
 // 2022, CMA-ES with Margin, SphereInt and EllipsoidInt.
@@ -56,15 +64,19 @@ struct AnalyticFunction {
   int default_dimension = 10;
   double lower = 0;  // bounds of every variable
   double upper = 0;
-  std::vector<double> start = {};      // one number: the same for every variable
-  std::vector<double> minimiser = {};  // of the plain form; empty: the shift s; otherwise s = 0
-  double minimum = 0;                  // the value at the minimiser, without f_opt
-  int bbob = 0;                        // its number if it is a function of BBOB; otherwise 0
-  bool has_instances = false;          // false: it has the plain form only
-  bool is_rotated = false;             // true: instances of our own functions are rotated
-  bool has_integers = false;           // true: the second half of the variables are integers
+  std::vector<double> start = {};  // one number: the same for every variable
+  // Of the plain form; empty: the shift s; otherwise s = 0. If there are more variables than numbers,
+  // the last number counts for the others too.
+  std::vector<double> minimiser = {};
+  double minimum = 0;          // the value at the minimiser, without f_opt
+  int bbob = 0;                // its number if it is a function of BBOB; otherwise 0
+  bool has_instances = false;  // false: it has the plain form only
+  bool is_rotated = false;     // true: instances of our own functions are rotated
+  bool has_integers = false;   // true: the second half of the variables are integers
   int constraint_count = 0;
-  double (*calc_value)(Point) = nullptr;
+  int objective_count = 1;
+  double (*calc_value)(Point) = nullptr;                     // with several objectives, their sum
+  std::vector<double> (*calc_objectives)(Point) = nullptr;   // null: the value is the objective
   std::vector<double> (*calc_constraints)(Point) = nullptr;  // null: no constraints
   std::vector<double> (*calc_residuals)(Point) = nullptr;    // null: no residuals
 };

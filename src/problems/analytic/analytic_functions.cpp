@@ -145,6 +145,36 @@ std::vector<double> calc_rosen_suzuki_constraints(Point x) {
           2 * a + b + c + 2 * x[0] - x[1] - x[3] - 5};
 }
 
+std::vector<double> calc_zdt1_objectives(Point x) {
+  double sum = 0;
+  for (const double xi : x.subspan(1)) {
+    sum += xi;
+  }
+  const double g = 1 + 9 * sum / static_cast<double>(x.size() - 1);
+  return {x[0], g * (1 - std::sqrt(x[0] / g))};
+}
+
+std::vector<double> calc_dtlz2_objectives(Point x) {
+  constexpr std::size_t kAngles = 2;
+  double radius = 1;
+  for (const double xi : x.subspan(kAngles)) {
+    radius += (xi - 0.5) * (xi - 0.5);
+  }
+  const double a = 0.5 * std::numbers::pi * x[0];
+  const double b = 0.5 * std::numbers::pi * x[1];
+  return {radius * std::cos(a) * std::cos(b), radius * std::cos(a) * std::sin(b),
+          radius * std::sin(a)};
+}
+
+template <std::vector<double> (*calc_objectives)(Point)>
+double calc_objective_sum(Point x) {
+  double sum = 0;
+  for (const double objective : calc_objectives(x)) {
+    sum += objective;
+  }
+  return sum;
+}
+
 // Returns the row of a function whose second half of variables are integers. Box and start are ours:
 // the paper has the integers in [-10, 10], no bounds for the real variables, and a random start.
 AnalyticFunction make_mixed_row(const std::string& name, const std::string& summary,
@@ -294,6 +324,36 @@ const std::vector<AnalyticFunction>& analytic_table() {
                      "Separable quadratic of condition number 1e6; the second half of the "
                      "variables are integers",
                      "EllipsoidInt", calc_ellipsoid, calc_ellipsoid_residuals),
+      {.name = "zdt1",
+       .summary = "Two objectives with a convex front",
+       .source = "Zitzler, Deb and Thiele 2000, Comparison of multiobjective evolutionary "
+                 "algorithms: empirical results, T1",
+       .smallest_dimension = 2,
+       .largest_dimension = 30,
+       .default_dimension = 30,
+       .lower = 0,
+       .upper = 1,
+       .start = {0.5},
+       .minimiser = {0.25, 0},  // of f_1 + 1 - sqrt(f_1)
+       .minimum = 0.75,
+       .objective_count = 2,
+       .calc_value = calc_objective_sum<calc_zdt1_objectives>,
+       .calc_objectives = calc_zdt1_objectives},
+      {.name = "dtlz2",
+       .summary = "Three objectives, whose front is a part of the unit sphere",
+       .source = "Deb, Thiele, Laumanns and Zitzler 2005, Scalable test problems for evolutionary "
+                 "multiobjective optimization, DTLZ2 with three objectives",
+       .smallest_dimension = 3,
+       .largest_dimension = 100,
+       .default_dimension = 12,
+       .lower = 0,
+       .upper = 1,
+       .start = {0.2},            // away from 1/2, where the front is
+       .minimiser = {0, 0, 0.5},  // one of the front's corners, where the sum is smallest
+       .minimum = 1,
+       .objective_count = 3,
+       .calc_value = calc_objective_sum<calc_dtlz2_objectives>,
+       .calc_objectives = calc_dtlz2_objectives},
       make_bbob_row(1, "Sphere", calc_sphere, calc_sphere_residuals),
       make_bbob_row(2, "Separable ellipsoid with oscillation, condition number 1e6", calc_ellipsoid,
                     calc_ellipsoid_residuals),

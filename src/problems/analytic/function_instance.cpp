@@ -91,6 +91,7 @@ FunctionInstance make_plain_instance(const AnalyticFunction& function, std::size
     shift[i] = i < first_integer ? s : std::copysign(std::ceil(std::abs(s)), s);
   }
   instance.minimiser = is_shifted ? shift : function.minimiser;
+  instance.minimiser.resize(dimension, instance.minimiser.back());
   instance.calc_z = [shift = std::move(shift)](std::span<const double> x, std::span<double> z) {
     subtract(x, shift, z);
   };

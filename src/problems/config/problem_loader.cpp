@@ -92,7 +92,8 @@ const Setting<int> kFunctionDimension{
      .upper = static_cast<double>(AnalyticFunction{}.largest_dimension)},
     AnalyticFunction{}.default_dimension,
     "for the kind analytic: number of variables (rosenbrock, sphere-int and ellipsoid-int: at "
-    "least 2; branin: 2; hartmann6: 6; constrained: 4; bbob-f1 to bbob-f15: 2 to 40)"};
+    "least 2; branin: 2; hartmann6: 6; constrained: 4; zdt1: 2 to 30; dtlz2: 3 to 100; bbob-f1 to "
+    "bbob-f15: 2 to 40)"};
 const Setting<int> kFunctionInstance{
     "instance",
     {.lower = 0, .upper = kMostInstances},

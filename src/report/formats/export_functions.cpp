@@ -11,7 +11,7 @@ namespace armwright {
 namespace {
 
 // The problem `robot` is missing: without a robot of the user's it is no function.
-constexpr std::array<std::pair<std::string_view, std::size_t>, 45> kFunctions = {{
+constexpr std::array<std::pair<std::string_view, std::size_t>, 47> kFunctions = {{
     {"sphere", 25},          {"ellipsoid", 26},     {"rosenbrock", 27},   {"rastrigin", 28},
     {"constrained", 29},     {"bbob-f1", 30},       {"bbob-f2", 31},      {"bbob-f3", 32},
     {"bbob-f8", 33},         {"bbob-f10", 34},      {"bbob-f15", 35},     {"q1-complex", 40},
@@ -23,7 +23,7 @@ constexpr std::array<std::pair<std::string_view, std::size_t>, 45> kFunctions = 
     {"robust-q1", 61},       {"robust-e6", 62},     {"robust-q3", 63},    {"initial", 64},
     {"initial-0cm", 65},     {"initial-45cm", 66},  {"initial-90cm", 67}, {"co-design", 68},
     {"sphere-int", 36},      {"ellipsoid-int", 37}, {"ackley", 38},       {"branin", 39},
-    {"hartmann6", 69},
+    {"hartmann6", 69},       {"zdt1", 70},          {"dtlz2", 71},
 }};
 
 bool is_shipped(const RecordedFunction& function) {

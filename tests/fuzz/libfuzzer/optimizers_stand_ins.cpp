@@ -5,6 +5,7 @@
 #include "optimizers/ceres/ceres_backend.hpp"
 #include "optimizers/cma/cma_search.hpp"
 #include "optimizers/dfls/dfls_search.hpp"
+#include "optimizers/fronts/front_generation.hpp"
 #include "optimizers/nlopt/nlopt_algorithms.hpp"
 #include "optimizers/pagmo/pagmo_backend.hpp"
 #include "optimizers/plugins/plugin_library.hpp"
@@ -24,6 +25,9 @@ std::vector<OptimizerRow> make_dfls_rows() {
   return {};
 }
 std::vector<OptimizerRow> make_turbo_rows() {
+  return {};
+}
+std::vector<OptimizerRow> make_front_rows() {
   return {};
 }
 std::vector<OptimizerRow> make_ceres_rows() {
