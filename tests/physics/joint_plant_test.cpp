@@ -9,7 +9,6 @@
 
 #include "sim/dynamics/joint_effort.hpp"
 #include "sim/kinematics/kinematics.hpp"
-#include "sim/tracking/tracking_loop.hpp"
 #include "swinging_arms.hpp"
 
 namespace armwright::physics_test {
@@ -34,43 +33,6 @@ double calc_friction(const JointPlant& its, double rate) {
          (its.coulomb + its.stribeck) * std::tanh(rate / its.transition_rate) -
          its.stribeck * std::tanh(rate / its.stribeck_rate);
 }
-
-// An arm with its plant, stepped as a TrackingLoop does.
-template <class Arm>
-class DrivenArm {
- public:
-  DrivenArm(RobotModel robot, const VectorXd& q, double step_s, const PhysicsSettings& physics = {})
-      : robot_(std::move(robot)),
-        step_s_(step_s),
-        q_(q),
-        arm_(make_arm<Arm>(robot_, q, physics)),
-        plant_(robot_, nullptr, {q_.data(), joints()}, step_s) {}
-
-  void step(const VectorXd& effort) {
-    const VectorXd rates = read_rates(arm_, joints());
-    plant_.act({effort.data(), joints()}, {q_.data(), joints()}, {rates.data(), joints()});
-    arm_.step(plant_.effort(), step_s_, plant_.inertia());
-    q_ = read_positions(arm_, joints());
-    plant_.remember({q_.data(), joints()});
-  }
-  void step(double effort) { step(VectorXd::Constant(1, effort)); }
-  double rate() const { return read_rates(arm_, joints())[0]; }
-  const VectorXd& q() const { return q_; }
-  double pushed(std::size_t joint) const {
-    return plant_.get_pushed(joint, q_[static_cast<Eigen::Index>(joint)]);
-  }
-  double measured() { return plant_.measure()[0]; }
-  const Arm& arm() const { return arm_; }
-  const RobotModel& robot() const { return robot_; }
-  std::size_t joints() const { return robot_.joint_count(); }
-
- private:
-  RobotModel robot_;
-  double step_s_;
-  VectorXd q_;
-  Arm arm_;
-  ArmPlant plant_;
-};
 
 const VectorXd kBegin = VectorXd::Constant(1, 0.3);
 

@@ -276,7 +276,9 @@ json describe_joint(const RobotModel& robot, std::size_t number) {
     if (joint.plant.is_elastic()) {
       plant["measured"] = joint.plant.measured == MeasuredSide::motor ? "motor" : "link";
     }
-    if (const auto& efforts = joint.plant.counterbalance.efforts; !efforts.empty()) {
+    if (joint.plant.unactuated) {
+      plant["unactuated"] = true;
+    } else if (const auto& efforts = joint.plant.counterbalance.efforts; !efforts.empty()) {
       const auto [least, most] = std::ranges::minmax(efforts);
       const char* const unit = slides ? "n" : "n_m";
       plant[fmt::format("counterbalance_least_{}", unit)] = least;

@@ -70,12 +70,19 @@ const JointNumber kOffset{"offset_n_m", "offset_n", kPlantAnySign,
                           "constant friction (default: 0)"};
 const JointNumber kStiffness{
     "stiffness_n_m_per_rad", "stiffness_n_per_m", kPlantNotNegative,
-    "stiffness between motor and link; needs an armature; 0: rigid (default: 0)"};
-const JointNumber kDamping{"damping_n_m_s_per_rad", "damping_n_s_per_m", kPlantNotNegative,
-                           "damping between motor and link; needs a stiffness (default: 0)"};
+    "stiffness between motor and link; needs an armature; 0: rigid; of an unactuated joint: of its "
+    "spring (default: 0)"};
+const JointNumber kDamping{
+    "damping_n_m_s_per_rad", "damping_n_s_per_m", kPlantNotNegative,
+    "damping between motor and link; needs a stiffness; of an unactuated joint: beside "
+    "its spring (default: 0)"};
 const Setting<std::string> kMeasured{
     "measured", one_of({"motor", "link"}), kNoDefault,  // in the order of the enum
     "side of an elastic joint that the controller measures (default: motor)"};
+
+const Setting<bool> kUnactuated{
+    "unactuated", false,
+    "the joint has no motor: its spring, relaxed at 0, and its damping are all that act on it"};
 
 const JointNumbers kPositions{"positions_rad", "positions_m", kPlantAnySign,
                               "increasing positions that cover the joint's range"};
@@ -141,6 +148,7 @@ class PlantSettings {
         }
       }
       table.settings.push_back(&kMeasured);
+      table.settings.push_back(&kUnactuated);
       table.tables = {&kCounterbalanceSettings, &kGasSpringSettings};
       joints_.tables.push_back(&table);
     }
@@ -238,6 +246,35 @@ void read_elasticity(const ConfigTable& table, JointKind kind, JointPlant& plant
     plant.measured = static_cast<MeasuredSide>(table.get_choice(kMeasured));
     refuse_rigid(kMeasured);
   }
+}
+
+// Reads the spring and the damper of an unactuated joint.
+void read_unactuated(const ConfigTable& table, Joint& joint) {
+  const double stiffness = find_or(table, kStiffness, joint.kind, 0);
+  const double damping = find_or(table, kDamping, joint.kind, 0);
+  if (!(stiffness > 0) && !(damping > 0)) {
+    table.refuse(kUnactuated,
+                 fmt::format("such a joint needs {} > 0 or {} > 0; without both nothing holds it",
+                             kStiffness.get(joint.kind).key, kDamping.get(joint.kind).key));
+  }
+  for (const std::string& key :
+       {kMeasured.key, kCounterbalanceSettings.key, kGasSpringSettings.key}) {
+    if (table.has(key)) {
+      table.refuse(key, "the joint is unactuated; leave this out");
+    }
+  }
+  if (joint.lower > 0 || joint.upper < 0) {
+    table.refuse(kUnactuated,
+                 fmt::format("its spring is relaxed at 0, which must lie within the range of the "
+                             "joint; that is {} to {} {}",
+                             format_exact(joint.lower), format_exact(joint.upper),
+                             joint.kind == JointKind::revolute ? "rad" : "m"));
+  }
+  constexpr double kTimesRange = 10;  // of a joint that slides; at least 1 m
+  const double slide = std::max({1.0, kTimesRange * joint.upper, -kTimesRange * joint.lower});
+  joint.plant.set_unactuated(
+      stiffness, damping,
+      joint.kind == JointKind::revolute ? std::numbers::pi : std::min(slide, 1e6));
 }
 
 // Refuses a counterbalance on a joint that turns without end or more than once.
@@ -365,6 +402,10 @@ void read_joint(const ConfigTable& table, Joint& joint) {
   plant.armature = read_armature(table, joint.kind, plant.armature);
   plant.gear_ratio = find_or(table, kGearRatio, joint.kind, plant.gear_ratio);
   read_friction(table, joint.kind, plant);
+  if (table.get(kUnactuated)) {
+    read_unactuated(table, joint);
+    return;
+  }
   read_elasticity(table, joint.kind, plant);
   const bool has_points = table.has(kCounterbalanceSettings.key);
   const bool has_spring = table.has(kGasSpringSettings.key);
@@ -495,6 +536,9 @@ std::map<std::string, double> list_plant_numbers(const Joint& joint) {
 std::string describe_plant(const Joint& joint) {
   const JointPlant& plant = joint.plant;
   std::vector<std::string> parts;
+  if (plant.unactuated) {
+    parts.emplace_back("unactuated");
+  }
   for (const PlantNumber& number : kPlantNumbers) {
     const double value = plant.*number.member;
     if (value != 0 && number.words != nullptr) {
@@ -505,7 +549,8 @@ std::string describe_plant(const Joint& joint) {
   if (plant.is_elastic() && plant.measured == MeasuredSide::link) {
     parts.push_back("measured at the link");
   }
-  if (const std::vector<double>& efforts = plant.counterbalance.efforts; !efforts.empty()) {
+  const std::vector<double>& efforts = plant.counterbalance.efforts;
+  if (!efforts.empty() && !plant.unactuated) {
     const auto [least, most] = std::ranges::minmax(efforts);
     parts.push_back(fmt::format("counterbalance {:.6g} to {:.6g} {}", least, most,
                                 kOffset.get(joint.kind).unit));

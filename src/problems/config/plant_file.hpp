@@ -46,6 +46,7 @@ std::filesystem::path name_plant_file(std::filesystem::path urdf);
 // - a negative armature, viscous or Coulomb friction, stiffness or damping,
 // - Stribeck friction below -Coulomb friction,
 // - a transition rate that is not positive, a Stribeck rate below the transition rate,
+// - an unactuated joint without spring and damper, with a counterbalance, or with a range without 0,
 // - stiffness without armature, and damping or a measured side without stiffness,
 // - a counterbalance on a joint without finite range or with more than one turn,
 // - points whose positions do not increase or do not cover the joint's range,

@@ -46,11 +46,15 @@ std::string write_joint(const Joint& joint, const Joint& plain) {
   if (joint.plant.measured == MeasuredSide::link) {
     text += "measured = \"link\"\n";
   }
+  if (joint.plant.unactuated) {
+    text += "unactuated = true\n";
+  }
   const std::string name = quote_toml(joint.name);
   if (!text.empty()) {
     text = fmt::format("\n[joint.{}]\n{}", name, text);
   }
-  if (const Counterbalance& own = joint.plant.counterbalance; !own.efforts.empty()) {
+  const Counterbalance& own = joint.plant.counterbalance;
+  if (!own.efforts.empty() && !joint.plant.unactuated) {
     Counterbalance model = own;
     model.correct(1, 0);
     const bool turns = joint.kind == JointKind::revolute;

@@ -289,6 +289,47 @@ void settle_reading(const ConfigTable& table, const RobotReading& reading) {
   }
 }
 
+// Refuses robots without a motor, and tasks that unactuated joints cannot have.
+void check_unactuated_joints(const ConfigTable& table, const TrackingConfig& config) {
+  const std::vector<Joint>& joints = config.robot.joints;
+  const auto first = std::ranges::find_if(joints, [](auto& one) { return one.plant.unactuated; });
+  if (first == joints.end()) {
+    return;
+  }
+  const std::string name = sanitize(first->name);
+  if (std::ranges::all_of(joints, [](auto& one) { return one.plant.unactuated; })) {
+    table.get_table(kRobotSettings)
+        .refuse(kRobotPlant,
+                fmt::format("all joints are unactuated ('{}' first); at least one must "
+                            "have a motor",
+                            name));
+  }
+  if (config.task.kinematics == KinematicsChoice::palletiser) {
+    table.get_table_or_empty(kTaskSettings)
+        .refuse("kinematics",
+                fmt::format("joint '{}' is unactuated, which the closed form does not know; set it "
+                            "to \"numeric\"",
+                            name));
+  }
+  for (std::size_t i = 0; i < config.task.home.size(); ++i) {
+    if (joints[i].plant.unactuated && config.task.home[i] != 0) {
+      table.get_table_or_empty(kTaskSettings)
+          .refuse(kTaskHome, fmt::format("joint '{}' is unactuated; its position must be 0, where "
+                                         "its spring is relaxed",
+                                         sanitize(joints[i].name)));
+    }
+  }
+  const ConfigTable control = table.get_table_or_empty(kControlSettings);
+  if (static_cast<ControlInterface>(control.get_choice(kControlInterface)) !=
+      ControlInterface::effort) {
+    control.refuse(
+        kControlInterface,
+        fmt::format("joint '{}' is unactuated; drives with inner loops are simulated for "
+                    "arms without such joints; set it to \"effort\"",
+                    name));
+  }
+}
+
 ReadRobot load_robot(const ConfigTable& table, const std::filesystem::path& urdf,
                      LoadedProblem& loaded) {
   RobotOptions options;
@@ -358,7 +399,15 @@ void check_floor(const ConfigTable& table, const Setting<double>& setting, doubl
 }
 
 ReadRobot read_robot(const ConfigTable& table, LoadedProblem& loaded) {
-  return load_robot(table, resolve_named(table, kRobotUrdf, "robots"), loaded);
+  ReadRobot read = load_robot(table, resolve_named(table, kRobotUrdf, "robots"), loaded);
+  for (const Joint& joint : read.robot.joints) {
+    if (joint.plant.unactuated) {
+      table.refuse(kRobotPlant, fmt::format("joint '{}' is unactuated; such a robot cannot be "
+                                            "identified or excited, only simulated and tuned",
+                                            sanitize(joint.name)));
+    }
+  }
+  return read;
 }
 
 void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
@@ -387,6 +436,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
     task.refuse(kTaskHome, fmt::format("it must hold {} numbers, one a joint of the robot",
                                        config.robot.joint_count()));
   }
+  check_unactuated_joints(table, config);
   if (config.task.floor_m) {
     check_floor(task, kTaskFloor, *config.task.floor_m, config.robot);
   }

@@ -162,11 +162,19 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
     }
     named.push_back(name);
     const auto found = std::find(joint_names.begin(), joint_names.end(), name);
+    if (config.robot.joints[static_cast<std::size_t>(found - joint_names.begin())]
+            .plant.unactuated) {
+      joint.refuse(kJointVariablesName,
+                   "that joint is unactuated, so it has no controller to tune");
+    }
     chosen[static_cast<std::size_t>(found - joint_names.begin())] =
         read_names(joint, kJointVariablesOptimize);
   }
   std::vector<DesignParameter> parameters;
   for (std::size_t joint = 0; joint < joints; ++joint) {
+    if (config.robot.joints[joint].plant.unactuated) {
+      continue;
+    }
     for (std::size_t i = 0; i < valid.size(); ++i) {
       if (std::find(chosen[joint].begin(), chosen[joint].end(), valid[i]) == chosen[joint].end()) {
         continue;
@@ -234,6 +242,11 @@ void read_variables(const ConfigTable& variables, const ConfigTable& control,
                                  "design made for this one (variables.start=proposed makes one)",
                                  config.start.joints.size(), sanitize(config.robot.name),
                                  config.robot.joint_count()));
+  }
+  try {
+    check_unactuated(config.start, config.robot);
+  } catch (const Error& error) {
+    variables.refuse(kVariablesStart, error.what());
   }
   apply_controller(control, config);
   config.parameters = read_parameters(variables, config);

@@ -14,6 +14,8 @@
 namespace armwright {
 namespace {
 
+constexpr std::size_t kFirstGains = 16;  // per joint, whose factors version 1.0 drew
+
 bool has_any(const std::vector<double>& sizes) {
   return std::ranges::any_of(sizes, [](double size) { return size > 0; });
 }
@@ -51,8 +53,7 @@ RobotModel Plant::make_arm(RobotModel nominal) const {
     plant.viscous += viscous[i];
     plant.coulomb += coulomb[i];
     plant.armature *= armature_factors[i];
-    plant.stiffness *= stiffness_factors[i];
-    plant.damping *= stiffness_factors[i];
+    scale_stiffness(plant, stiffness_factors[i]);
   }
   return nominal;
 }
@@ -117,7 +118,7 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
   }
   for (std::size_t i = 0; i < joints; ++i) {
     std::vector<double>& factors = plant.gain_factors.emplace_back();
-    for (std::size_t k = 0; k < Plant::kMostGains; ++k) {
+    for (std::size_t k = 0; k < kFirstGains; ++k) {
       factors.push_back(std::exp(p.gain_sigma * random.normal()));
     }
   }
@@ -132,6 +133,12 @@ Plant draw_plant(const Perturbation& perturbation, std::size_t joints, double su
     plant.fitted_values = p.fitted == Perturbation::Fitted::draws
                               ? p.fitted_plant->draw(random)
                               : p.fitted_plant->get_corner(number);
+  }
+  // Controllers with more gains came later.
+  for (std::vector<double>& factors : plant.gain_factors) {
+    while (factors.size() < Plant::kMostGains) {
+      factors.push_back(std::exp(p.gain_sigma * random.normal()));
+    }
   }
   if (p.load_kg) {
     const auto [lower, upper] = *p.load_kg;

@@ -98,7 +98,7 @@ struct Plant {
   // TrackingInputs sets it.
   std::optional<TrackingSetup> setup;
 
-  static constexpr std::size_t kMostGains = 16;  // per joint
+  static constexpr std::size_t kMostGains = 18;  // per joint
 
   // Returns the arm with this plant's masses and joints; neither arm has its load.
   RobotModel make_arm(RobotModel nominal) const;

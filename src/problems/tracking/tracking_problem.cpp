@@ -162,6 +162,7 @@ void TrackingProblem::check_design(const ArmDesign& design) const {
                     design.joints.size(), config_.robot.name, config_.name,
                     config_.robot.joint_count()));
   }
+  check_unactuated(design, config_.robot);
   const ControllerRow& controller = find_controller(design.controller);
   check_interface(controller, config_.task.drives);
   if (controller.feed_forward != FeedForward::none &&

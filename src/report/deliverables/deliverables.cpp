@@ -137,8 +137,11 @@ bool FinishedArm::starts_held() const {
     controller.hold(kSomeEffort, {-kSomeEffort, kSomeEffort}, joint.gains, states.data());
     return std::ranges::any_of(states, [](double state) { return state != 0; });
   };
-  return config().task.control_start == ControlStart::gravity &&
-         std::ranges::all_of(design.joints, holds);
+  bool all = config().task.control_start == ControlStart::gravity;
+  for (std::size_t i = 0; i < design.joints.size(); ++i) {
+    all = all && (config().robot.joints[i].plant.unactuated || holds(design.joints[i]));
+  }
+  return all;
 }
 
 FinishedArm load_finished_arm(const fs::path& folder, std::string_view format) {
@@ -191,6 +194,9 @@ void write_urdf(const FinishedArm& arm, const fs::path& folder) {
   for (std::size_t i = 0; i < arm.design.joints.size(); ++i) {
     const Joint& joint = arm.config().robot.joints[i];
     const JointDrive& drive = arm.design.joints[i];
+    if (joint.plant.unactuated) {
+      continue;
+    }
     efforts[joint.name] = calc_largest_effort(drive);
     comment += fmt::format("  {}: {} to {} {}\n", joint.name, format_exact(drive.limits.min),
                            format_exact(drive.limits.max), get_joint_unit("N m", joint.kind));

@@ -58,6 +58,14 @@ EffortLimits get_command_limits(const Joint& joint, const ArmDesign& design, std
 
 void check_controller(const Ros2Distribution& distribution, const RobotModel& robot,
                       const ArmDesign& design) {
+  for (const Joint& joint : robot.joints) {
+    if (joint.plant.unactuated) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("joint '{}' is unactuated, so ROS 2 cannot control it: take the "
+                              "gains from --format datasheet",
+                              sanitize(joint.name)));
+    }
+  }
   const ControlInterface interface = find_controller(design.controller).interface;
   if (interface == ControlInterface::effort && design.controller != "pid") {
     throw Error(

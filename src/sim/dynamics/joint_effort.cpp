@@ -14,7 +14,7 @@ double calc_friction_chord(const JointPlant& plant, double rate) {
   const FrictionNumbers<Number> numbers{plant.coulomb + plant.stribeck, plant.stribeck,
                                         1 / plant.transition_rate, 1 / plant.stribeck_rate};
   const Fraction<Number> dry = calc_friction_chord(numbers, Number(rate), plant.stribeck != 0);
-  return plant.viscous + dry.n.v / dry.d.v;
+  return plant.get_drag() + dry.n.v / dry.d.v;
 }
 
 double calc_counterbalance(const Joint& joint, double position) {

@@ -113,7 +113,7 @@ NumericKinematics::NumericKinematics(const RobotModel& robot, const ToolTask& to
       tip_turn_(robot.tip_pose.linear()),
       tip_place_(robot.tip_pose.translation()),
       home_(std::move(home)),
-      within_limits_(within_limits),
+      within_limits_(within_limits || robot.has_unactuated()),
       solver_(solver),
       solve_lanes_(postures::get_solve(find_best_simd())) {
   const std::size_t n = robot.joint_count();
@@ -141,6 +141,13 @@ NumericKinematics::NumericKinematics(const RobotModel& robot, const ToolTask& to
     part.has_middle = std::isfinite(joint.lower) && std::isfinite(joint.upper);
     part.middle = part.has_middle ? 0.5 * (joint.lower + joint.upper) : 0;
     length_m_ += part.place.norm() + (part.slides && part.has_middle ? part.upper - part.lower : 0);
+    if (joint.plant.unactuated) {
+      part.held = true;
+      part.lower = part.upper = part.middle = 0;
+    } else if (within_limits_ && !within_limits) {
+      part.lower = -std::numeric_limits<double>::infinity();
+      part.upper = std::numeric_limits<double>::infinity();
+    }
     part.unit = part.slides ? calc_unit_of_slides(robot, joint) : 1;
     chain_.push_back(part);
   }
@@ -324,6 +331,9 @@ NumericKinematics::Jacobian NumericKinematics::calc_jacobian(const Posture& post
   const Vector3d pointing = posture.turn * tool_.axis;
   for (Eigen::Index i = 0; i < n; ++i) {
     const Vector3d& axis = posture.axis[i];
+    if (chain_[static_cast<std::size_t>(i)].held) {
+      continue;
+    }
     if (chain_[static_cast<std::size_t>(i)].slides) {
       jacobian.col(i).head<3>() = axis;
       continue;

@@ -26,6 +26,9 @@
 // (posture_solver.hpp). `scalar` is that of version 1.0, one posture at a time; recorded
 // configurations of 1.0 keep it, because the last bits of the two differ.
 //
+// Unactuated joints are held at 0: their ranges are 0 to 0, and J has columns of 0 for them. Ranges
+// are then always kept. Without `within_limits`, those of the other joints are infinite.
+//
 // Joint positions q are in rad or m, one per joint. Positions of revolute joints are not wrapped,
 // so they are continuous along a path.
 #pragma once
@@ -151,6 +154,7 @@ class NumericKinematics {
     double unit = 1;  // of a sliding joint's way, in `lanes` (m)
     double lower = 0, upper = 0, middle = 0;
     bool has_middle = false;
+    bool held = false;
   };
   struct Posture;  // the places of all joints in the world
 

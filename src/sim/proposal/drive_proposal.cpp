@@ -218,6 +218,10 @@ std::vector<ArmDesign> propose_designs(const RobotModel& robot, TrackingTask tas
     const double period_s = is_first ? task.control_period_s : own_period_s;
     ArmDesign& design = designs.emplace_back();
     for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+      if (robot.joints[i].plant.unactuated) {
+        design.joints.push_back({.gains = {0, 0, 0}, .limits = {}});
+        continue;
+      }
       const double m = demand.inertia[i];
       const double d = std::min(2 * kDampingRatio * w * m,
                                 kMostSampledDamping / (period_s * demand.mobility[i]));

@@ -14,6 +14,13 @@
 // elastic joint robots):
 //   A pdd = u - f(pd) - e,   M(q) qdd + b(q, v) = e + s(q),   e = k (p - q) + z (pd - v).
 //
+// An unactuated joint has no motor. A spring of stiffness k that is relaxed at 0, and a damping z,
+// act on it in place of u:
+//   M(q) qdd + b(q, v) = -k q - z v - A qdd - f(v).
+// A chain of links on such joints stands for a flexible link. It has an entry like any other joint
+// in designs and target tables, where its gains, effort limits and targets are 0. The spring is kept
+// as a counterbalance and z as viscous friction, so it has no code of its own in engines.
+//
 // Units: rad, rad/s and N m for a revolute joint, m, m/s and N for a prismatic one.
 #pragma once
 
@@ -56,17 +63,32 @@ struct JointPlant {
   double transition_rate = 0.01;  // v_w > 0, rad/s or m/s
   double stribeck_rate = 0.1;     // v_s >= v_w, rad/s or m/s
   double offset = 0;              // o, N m or N
-  double stiffness = 0;           // k, N m/rad or N/m; 0: the joint is rigid. Needs armature > 0
-  double damping = 0;             // z, N m s/rad or N s/m
+  // k, N m/rad or N/m; 0: the joint is rigid. Needs armature > 0, except of an unactuated joint.
+  double stiffness = 0;
+  double damping = 0;  // z, N m s/rad or N s/m
   MeasuredSide measured = MeasuredSide::motor;
   Counterbalance counterbalance;
+  bool unactuated = false;  // set_unactuated() sets it
 
   bool operator==(const JointPlant&) const = default;
-  bool is_elastic() const { return stiffness > 0; }
-  bool has_friction() const { return viscous > 0 || coulomb > 0 || stribeck != 0 || offset != 0; }
+  bool is_elastic() const { return stiffness > 0 && !unactuated; }
+  bool has_friction() const {
+    return get_drag() > 0 || coulomb > 0 || stribeck != 0 || offset != 0;
+  }
+  // Returns the viscous friction between the joint's two links.
+  double get_drag() const { return unactuated ? viscous + damping : viscous; }
   // Returns whether nothing stands between motor and link.
   bool is_ideal() const {
-    return armature == 0 && !has_friction() && !is_elastic() && counterbalance.efforts.empty();
+    return armature == 0 && !has_friction() && !is_elastic() && counterbalance.efforts.empty() &&
+           !unactuated;
+  }
+  // Takes the motor away. The spring's effort is straight up to +-`widest` (rad or m).
+  void set_unactuated(double own_stiffness, double own_damping, double widest) {
+    unactuated = true;
+    stiffness = own_stiffness;
+    damping = own_damping;
+    const double most = stiffness * widest;
+    counterbalance = {-widest, widest, {most, 0, -most}};
   }
 };
 
@@ -74,6 +96,17 @@ struct JointPlant {
 inline void scale_friction(JointPlant& plant, double factor) {
   for (double* part : {&plant.viscous, &plant.coulomb, &plant.stribeck, &plant.offset}) {
     *part *= factor;
+  }
+}
+
+// Multiplies the stiffness and the damping of a joint's spring.
+inline void scale_stiffness(JointPlant& plant, double factor) {
+  plant.stiffness *= factor;
+  plant.damping *= factor;
+  if (plant.unactuated) {
+    for (double& effort : plant.counterbalance.efforts) {
+      effort *= factor;
+    }
   }
 }
 

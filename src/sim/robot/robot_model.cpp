@@ -175,6 +175,10 @@ bool RobotModel::has_plant() const {
   return std::ranges::any_of(joints, [](const Joint& joint) { return !joint.plant.is_ideal(); });
 }
 
+bool RobotModel::has_unactuated() const {
+  return std::ranges::any_of(joints, [](const Joint& joint) { return joint.plant.unactuated; });
+}
+
 RobotModel scale_masses(RobotModel model, double factor) {
   if (!std::isfinite(factor) || factor <= 0) {
     throw Error(ErrorKind::usage,
@@ -197,17 +201,16 @@ RobotModel scale_plants(RobotModel model, const PlantScales& scales) {
   for (std::size_t i = 0; i < model.joint_count(); ++i) {
     JointPlant& plant = model.joints[i].plant;
     scale_friction(plant, scales.friction);
-    if (plant.armature == 0) {
+    if (plant.armature == 0 && !plant.unactuated) {
       plant.armature = scales.armature_share * inertias[i];
     }
-    if (!plant.is_elastic() && scales.elastic_hz > 0) {
+    if (!plant.is_elastic() && !plant.unactuated && scales.elastic_hz > 0) {
       const double rate = 2 * std::numbers::pi * scales.elastic_hz;  // rad/s
       plant.stiffness = rate * rate * plant.armature;
       plant.damping = 2 * kSpringDamping * rate * plant.armature;
     }
     plant.armature *= scales.armature;
-    plant.stiffness *= scales.stiffness;
-    plant.damping *= scales.stiffness;
+    scale_stiffness(plant, scales.stiffness);
   }
   return model;
 }

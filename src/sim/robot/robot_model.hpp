@@ -129,6 +129,7 @@ struct RobotModel {
   std::size_t joint_count() const { return joints.size(); }
   // Returns whether a joint is not ideal.
   bool has_plant() const;
+  bool has_unactuated() const;
 };
 
 // The density of links without <inertial> if RobotOptions::repair asks for one: that of water, as

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace armwright {
 
@@ -31,6 +32,26 @@ EffortTotals calc_effort_totals(const ArmDesign& design, const RobotModel& robot
   return totals;
 }
 
+namespace {
+
+bool is_without_effort(const JointDrive& drive) {
+  return drive.limits.min == 0 && drive.limits.max == 0 &&
+         std::ranges::all_of(drive.gains, [](double gain) { return gain == 0; });
+}
+
+}  // namespace
+
+void check_unactuated(const ArmDesign& design, const RobotModel& robot) {
+  for (std::size_t i = 0; i < design.joints.size(); ++i) {
+    if (robot.joints[i].plant.unactuated && !is_without_effort(design.joints[i])) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("joint '{}' is unactuated, so it has no controller; the design must "
+                              "have 0 for all its gains and both effort limits",
+                              sanitize(robot.joints[i].name)));
+    }
+  }
+}
+
 ArmDesign convert_design(const ArmDesign& design, std::string_view controller, double period_s,
                          double lag_s) {
   if (design.controller == controller) {
@@ -49,6 +70,9 @@ ArmDesign convert_design(const ArmDesign& design, std::string_view controller, d
     const JointDrive& pid = design.joints[joint];
     JointDrive& drive = converted.joints[joint];
     drive.gains.assign(row.gains.size(), 0.0);
+    if (is_without_effort(pid)) {
+      continue;
+    }
     row.convert({pid.gains.at(0), pid.gains.at(1), pid.gains.at(2), calc_largest_effort(pid),
                  period_s, lag_s},
                 drive.gains.data());

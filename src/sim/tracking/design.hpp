@@ -38,9 +38,13 @@ struct EffortTotals {
 };
 EffortTotals calc_effort_totals(const ArmDesign& design, const RobotModel& robot);
 
+// Throws Error{usage} if the design has a gain or an effort limit for an unactuated joint.
+void check_unactuated(const ArmDesign& design, const RobotModel& robot);
+
 // Returns the design itself if it is for the given controller. From a PID design it makes one for
 // that controller: ControllerRow::convert computes the gains, and the rest stays. Throws
-// Error{usage} for a design of any other controller, and if a gain is not finite. `lag_s` is that of
+// Error{usage} for a design of any other controller, and if a gain is not finite. Joints whose gains
+// and limits are all 0 keep gains of 0. `lag_s` is that of
 // the arm's drives (ArmDrives::calc_lag_s()).
 ArmDesign convert_design(const ArmDesign& design, std::string_view controller, double period_s,
                          double lag_s = 0);

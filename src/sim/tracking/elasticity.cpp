@@ -69,7 +69,7 @@ int count_substeps(const ElasticMode& mode, double control_period_s) {
 std::optional<ElasticMode> find_fastest_mode(const RobotModel& robot) {
   std::vector<Eigen::Index> elastic;
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
-    if (robot.joints[i].plant.is_elastic()) {
+    if (robot.joints[i].plant.stiffness > 0) {
       elastic.push_back(static_cast<Eigen::Index>(i));
     }
   }
@@ -77,13 +77,13 @@ std::optional<ElasticMode> find_fastest_mode(const RobotModel& robot) {
     return {};
   }
   const auto size = static_cast<Eigen::Index>(elastic.size());
-  Eigen::VectorXd stiffness(size), damping(size), armature(size);
+  Eigen::VectorXd stiffness(size), damping(size), mobility(size);
   for (Eigen::Index k = 0; k < size; ++k) {
     const JointPlant& plant =
         robot.joints[static_cast<std::size_t>(elastic[static_cast<std::size_t>(k)])].plant;
     stiffness[k] = plant.stiffness;
-    damping[k] = plant.damping;
-    armature[k] = plant.armature;
+    damping[k] = plant.is_elastic() ? plant.damping : 0;
+    mobility[k] = plant.is_elastic() ? 1 / plant.armature : 0;
   }
   const articulated::ChainModel chain(robot, 0);
   RandomStream random("elastic joints/postures", 0);
@@ -96,7 +96,7 @@ std::optional<ElasticMode> find_fastest_mode(const RobotModel& robot) {
     }
     const Eigen::MatrixXd inverse = calc_mass(robot, chain, q).inverse();
     Eigen::MatrixXd compliance = inverse(elastic, elastic);
-    compliance.diagonal() += armature.cwiseInverse();
+    compliance.diagonal() += mobility;
     const auto [square, swinging] = find_largest(compliance, stiffness);
     const auto [decay, damped] = find_largest(compliance, damping);
     const bool swings = std::sqrt(square) >= decay;

@@ -1,10 +1,11 @@
-// How fast an arm's elastic joints swing, which decides the steps that can simulate them.
+// How fast an arm's elastic and unactuated joints swing, which decides the steps that can simulate them.
 //
 // The stretches e of the springs obey, with the motors' efforts held,
 //   edd = -(A^-1 + (M^-1)_ee) (K e + Z ed),
 // with the diagonal matrices A, K and Z of the elastic joints' rotor inertias, stiffnesses and
 // dampings, and (M^-1)_ee the part of the inverse mass matrix that belongs to these joints. For one
-// joint the square of its rate is k (1 / A + 1 / M). Semi-implicit Euler with the step h makes the
+// joint the square of its rate is k (1 / A + 1 / M). Unactuated joints have no rotor: A^-1 counts as
+// 0. Their damping does not count, as engines take it as friction, which is implicit. Semi-implicit Euler with the step h makes the
 // frequency (w h)^2 / 24 too high and diverges at w h = 2.
 #pragma once
 
@@ -20,7 +21,7 @@ struct ElasticMode {
 };
 
 // Returns the fastest mode over postures drawn from the joints' ranges, the same ones in every
-// call. Returns nothing if no joint is elastic.
+// call. Returns nothing if no joint has a spring.
 std::optional<ElasticMode> find_fastest_mode(const RobotModel& robot);
 
 // The largest rate times step (rad) that is simulated: there the frequency is 1 % off.

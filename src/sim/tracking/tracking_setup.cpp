@@ -90,7 +90,8 @@ TrackingSetup::TrackingSetup(const RobotModel& robot, const TrackingTask& task)
       task_(task),
       tool_points_m_(make_tool_points(task.tool)) {
   const bool may_have_closed_form = task.kinematics != KinematicsChoice::numeric &&
-                                    task.tool.orientation == ToolOrientation::free;
+                                    task.tool.orientation == ToolOrientation::free &&
+                                    !robot.has_unactuated();
   if (task.kinematics == KinematicsChoice::palletiser) {
     closed_form_.emplace(robot, task.ik_bug);
   } else if (may_have_closed_form) {

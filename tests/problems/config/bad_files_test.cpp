@@ -11,12 +11,13 @@ namespace {
 
 constexpr const char* kProblems =
     "abdessemed-fuzzy, ackley, bbob-f1, bbob-f10, bbob-f15, bbob-f2, bbob-f3, bbob-f8, "
-    "branin, co-design, constrained, ellipsoid, ellipsoid-int, excite, faithful-e6, "
+    "branin, co-design, constrained, dtlz2, ellipsoid, ellipsoid-int, excite, faithful-e6, "
     "faithful-q1, faithful-q3, gasparetto, gasparetto-front, hartmann6, identify, initial, "
     "initial-0cm, initial-45cm, initial-90cm, q1-complex, q1-ramp, q1-requirements, q1-step, "
     "q1-trapezoid, q1-triangular, q2-e1, q2-e2, q2-e3, q2-e4, q2-e5, q2-e6, q2-energy, "
     "q2-error, q2-pareto, q2-torque, q3-load, q4-speed, rastrigin, robot, robust-e6, "
-    "robust-q1, robust-q3, rosenbrock, saravanan-puma, shiakolas, sphere, sphere-int";
+    "robust-q1, robust-q3, rosenbrock, saravanan-puma, shiakolas, sphere, sphere-int, "
+    "subudhi-flexible, zdt1";
 constexpr const char* kOrPath = " (or the path of a .toml file)";
 
 std::string problem_refusal(const std::string& name) {
@@ -51,8 +52,8 @@ TEST(BadName, UnknownDesignListsTheValidOnes) {
 TEST(BadName, UnknownRobotIsNamedWhereTheProblemNamesIt) {
   EXPECT_EQ(ProblemFolder().refusal_of_base_with("[robot]\nurdf = 'irb4600_40_254'"),
             "p.toml:3: robot.urdf is 'irb4600_40_254'; unknown robot 'irb4600_40_254'; did you "
-            "mean 'irb4600_40_255'? Valid: arm7, arm7_gripper, irb4600_40_255, irb4600_six, "
-            "kr300, planar2, puma560, two_tubes (or the path of a .urdf or .xml file)");
+            "mean 'irb4600_40_255'? Valid: arm7, arm7_gripper, irb4600_40_255, irb4600_six, kr300, "
+            "planar2, puma560, subudhi_flexible, two_tubes (or the path of a .urdf or .xml file)");
 }
 
 TEST(BadPath, SaysWhereItWasLookedFor) {
@@ -123,6 +124,7 @@ TEST(NamedFile, OfAPlantIsNoRobot) {
   const ProblemFolder folder;
   EXPECT_THAT(folder.refusal_of_base_with("[robot]\nplant = 'arm7'\n"),
               testing::HasSubstr("p.toml:3: robot.plant is 'arm7'; unknown plant 'arm7'. Valid: "
+                                 "kr300.plant, puma560.plant, subudhi_flexible.plant "
                                  "kr300.plant, puma560.plant "
                                  "(or the path of a .toml file)"));
   EXPECT_THAT(folder.refusal_of_base_with("[robot]\nurdf = 'mine.toml'\n"),

@@ -206,9 +206,9 @@ TEST(ShippedProblems, AreAllKnownHere) {
     expected.push_back(experiment.name);
   }
   expected.insert(expected.end(),
-                  {"abdessemed-fuzzy", "co-design", "excite", "gasparetto", "gasparetto-front",
-                   "identify", "q1-requirements", "q2-energy", "q2-error", "q2-pareto", "q2-torque",
-                   "robot", "saravanan-puma", "shiakolas"});
+                  {"subudhi-flexible", "abdessemed-fuzzy", "co-design", "excite", "gasparetto",
+                   "gasparetto-front", "identify", "q1-requirements", "q2-energy", "q2-error",
+                   "q2-pareto", "q2-torque", "robot", "saravanan-puma", "shiakolas"});
   for (const std::string experiment : {"q1", "e6", "q3"}) {
     expected.push_back("robust-" + experiment);
     expected.push_back("faithful-" + experiment);

@@ -53,7 +53,7 @@ void set_drive_packs(const TrackingSetup& setup, const TrackingJob& job, const C
 template <class Set>
 void set_plant_numbers(const JointPlant& plant, const Set& set) {
   set(kArmature, plant.armature);
-  set(kDrag, plant.viscous);
+  set(kDrag, plant.get_drag());
   set(kBreakaway, plant.coulomb + plant.stribeck);
   set(kStribeck, plant.stribeck);
   set(kInverseTransition, 1 / plant.transition_rate);
