@@ -410,6 +410,13 @@ void load_motion(const ConfigTable& table, LoadedProblem& loaded) {
   const std::filesystem::path urdf = resolve_named(robot, kRobotUrdf, "robots");
   config.robot = read_robot(robot, loaded).robot;
   const std::size_t joints = config.robot.joint_count();
+  for (const Joint& joint : config.robot.joints) {
+    if (joint.plant.unactuated) {
+      robot.refuse(kRobotUrdf, fmt::format("joint '{}' has no motor, so no motion can be planned "
+                                           "for it; make it a fixed joint",
+                                           sanitize(joint.name)));
+    }
+  }
   const ConfigTable its = table.get_table(kMotionSettings);
   read_payload(its, config.robot);
   config.gravity_m_per_s2 =

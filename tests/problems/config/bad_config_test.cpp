@@ -363,7 +363,7 @@ TEST(BadConfig, AnalyticFunctionsAreCheckedToo) {
   EXPECT_EQ(folder.refusal_of("kind = 'analytic'\n[function]\nname = 'spere'"),
             "p.toml:3: unknown function.name 'spere'; did you mean 'sphere'? Valid: sphere, "
             "ellipsoid, rosenbrock, rastrigin, ackley, branin, hartmann6, constrained, sphere-int, "
-            "ellipsoid-int, bbob-f1, bbob-f2, bbob-f3, bbob-f8, bbob-f10, bbob-f15");
+            "ellipsoid-int, zdt1, dtlz2, bbob-f1, bbob-f2, bbob-f3, bbob-f8, bbob-f10, bbob-f15");
   EXPECT_EQ(folder.refusal_of("kind = 'analytic'\n[function]\nname = 'rosenbrock'\ndimension = 1"),
             "p.toml:4: function.dimension is 1; it must be an integer from 2 to 1000");
   EXPECT_EQ(folder.refusal_of(

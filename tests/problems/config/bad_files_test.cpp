@@ -125,7 +125,6 @@ TEST(NamedFile, OfAPlantIsNoRobot) {
   EXPECT_THAT(folder.refusal_of_base_with("[robot]\nplant = 'arm7'\n"),
               testing::HasSubstr("p.toml:3: robot.plant is 'arm7'; unknown plant 'arm7'. Valid: "
                                  "kr300.plant, puma560.plant, subudhi_flexible.plant "
-                                 "kr300.plant, puma560.plant "
                                  "(or the path of a .toml file)"));
   EXPECT_THAT(folder.refusal_of_base_with("[robot]\nurdf = 'mine.toml'\n"),
               testing::HasSubstr("p.toml:3: robot.urdf is 'mine.toml'; unknown robot 'mine.toml'"));

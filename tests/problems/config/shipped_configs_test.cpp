@@ -344,13 +344,16 @@ TEST(ShippedProblems, AnalyticFunctionsHaveOneCase) {
     EXPECT_THAT(loaded.problem->description().variables, SizeIs(name == "branin"        ? 2
                                                                 : name == "constrained" ? 4
                                                                 : name == "hartmann6"   ? 6
+                                                                : name == "zdt1"        ? 30
+                                                                : name == "dtlz2"       ? 12
                                                                                         : 10));
     EXPECT_FALSE(loaded.schedule.changes_cases());
     EXPECT_EQ(loaded.schedule.cases, 1);
     EXPECT_EQ(loaded.sets.validation_cases, 1);
     EXPECT_EQ(loaded.sets.test_cases, 1);
-    EXPECT_EQ(loaded.budget, 10000);
-    EXPECT_EQ(loaded.optimizer, "ga");
+    const bool has_front = name == "zdt1" || name == "dtlz2";
+    EXPECT_EQ(loaded.budget, has_front ? 25000 : 10000);
+    EXPECT_EQ(loaded.optimizer, name == "zdt1" ? "mode" : name == "dtlz2" ? "nsga3" : "ga");
     EXPECT_THAT(loaded.input_hashes, IsEmpty());
   }
   const std::vector<std::string> overrides = {"sets.test_cases=7", "function.dimension=3"};

@@ -151,7 +151,7 @@ TEST(UnactuatedJoint, ThePlantsFileIsChecked) {
               HasSubstr("joint.bend_1_1.stiffness_n_m_per_rad is -1; it must be"));
   EXPECT_THAT(refusal("[joint.bend_1_1]\nunactuated = true\ndamping_n_m_s_per_rad = 1\n"
                       "measured = 'link'\n"),
-              HasSubstr("joint.bend_1_1.measured is \"link\"; the joint is unactuated"));
+              HasSubstr("joint.bend_1_1.measured is 'link'; the joint is unactuated"));
   std::string all;
   for (const char* name : {"shoulder", "bend_1_1", "bend_1_2", "elbow", "bend_2_1", "bend_2_2"}) {
     all += std::string("[joint.") + name + "]\nunactuated = true\nstiffness_n_m_per_rad = 3\n";

@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kDeg = std::numbers::pi / 180;
+constexpr double kDegree_rad = std::numbers::pi / 180;
 
 const MotionProblem& get_motion(const LoadedProblem& loaded) {
   return dynamic_cast<const MotionProblem&>(*loaded.problem);
@@ -67,7 +67,7 @@ TEST(Puma560, GravityEffortsAndInertiasAreThePublishedOnes) {
   RobotModel robot = get_motion(loaded).config().robot;
   const articulated::ChainModel chain(robot, 9.81);
   articulated::ArmEquations equations(chain);
-  const double q[] = {0, 45 * kDeg, 180 * kDeg, 0, 45 * kDeg, 0};
+  const double q[] = {0, 45 * kDegree_rad, 180 * kDegree_rad, 0, 45 * kDegree_rad, 0};
   const std::vector<double> rest(6, 0);
   equations.set(q, rest);
   const double gravity[] = {0, 31.63988, 6.03514, 0, 0.0282528, 0};
