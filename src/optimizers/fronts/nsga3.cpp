@@ -273,7 +273,7 @@ OptimizerRow make_nsga3_row() {
                       .upper = 1000};
   };
   OptimizerRow row = make_front_row("nsga3");
-  row.summary = "NSGA-III: genetic algorithm along reference directions, for many objectives";
+  row.summary = "NSGA-III: reference directions, for three objectives and more";
   row.source =
       "Deb and Jain 2014, An evolutionary many-objective optimization algorithm using "
       "reference-point-based nondominated sorting approach, part I";
