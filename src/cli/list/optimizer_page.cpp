@@ -99,7 +99,8 @@ std::string format_calls(const OptimizerRow& row) {
     const OptionSpec& first = row.options.front();
     text += format_call(row.name, {"--opt", first.name + "=" + to_text(first.fallback)});
   }
-  if (row.capabilities.generations) {
+  // Designs of a front must have met the same cases.
+  if (row.capabilities.generations && row.requirements.objectives < 2) {
     text += format_call(row.name, {"--schedule", "fresh:1"});
   }
   if (row.capabilities.local) {
