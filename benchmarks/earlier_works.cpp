@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "line_arm.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "problems/motion/motion_problem.hpp"
 #include "sim/dynamics/arm_equations.hpp"
@@ -169,26 +170,10 @@ void check_links() {
 
 void check_line() {
   const char* const group = "straight line";
-  RobotModel robot;
-  robot.joints.resize(3);
-  robot.links.resize(3);
-  robot.joints[1].axis = robot.joints[2].axis = -Eigen::Vector3d::UnitY();
-  robot.joints[2].origin.translation() = robot.tip_pose.translation() = Eigen::Vector3d::UnitX();
-  for (std::size_t link : {1, 2}) {
-    robot.links[link].inertial = {
-        0.5, {0.5, 0, 0}, Eigen::Vector3d(0, 0.5 / 12, 0.5 / 12).asDiagonal()};
-  }
-  const auto find_posture = [](double s) {
-    const Eigen::Vector3d p(1.2, -0.6 + 1.2 * s, 0.4 + 0.4 * s);
-    const double r = std::hypot(p.x(), p.y());
-    const double elbow = -std::acos((r * r + p.z() * p.z()) / 2 - 1);
-    Eigen::VectorXd q(3);
-    q << std::atan2(p.y(), p.x()), std::atan2(p.z(), r) - elbow / 2, elbow;
-    return q;
-  };
+  const RobotModel robot = make_line_arm();
   const std::vector<double> none(3, kNoLimit);
   const auto find_time = [&](double gravity, std::size_t intervals, std::vector<double> efforts) {
-    return calc_least_time(robot, gravity, sample_path(find_posture, intervals),
+    return calc_least_time(robot, gravity, sample_path(find_line_posture, intervals),
                            {none, none, none, std::move(efforts)})
         .duration_s;
   };

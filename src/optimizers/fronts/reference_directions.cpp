@@ -1,11 +1,10 @@
 #include "optimizers/fronts/reference_directions.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <utility>
 
 namespace armwright {
 namespace {
@@ -23,35 +22,6 @@ void add_directions(std::vector<double>& begun, std::size_t objectives, std::int
     add_directions(begun, objectives, left - part, divisions, directions);
     begun.pop_back();
   }
-}
-
-// Solves rows x = 1 by elimination with pivots. Returns nothing if the rows are dependent.
-std::optional<std::vector<double>> solve_for_ones(std::vector<std::vector<double>> rows) {
-  const std::size_t n = rows.size();
-  for (std::vector<double>& row : rows) {
-    row.push_back(1);
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t i = k + 1; i < n; ++i) {
-      if (std::abs(rows[i][k]) > std::abs(rows[k][k])) {
-        std::swap(rows[i], rows[k]);
-      }
-    }
-    if (!(std::abs(rows[k][k]) > 0)) {
-      return std::nullopt;
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      const double factor = i == k ? 0 : rows[i][k] / rows[k][k];
-      for (std::size_t j = k; j <= n && factor != 0; ++j) {
-        rows[i][j] -= factor * rows[k][j];
-      }
-    }
-  }
-  std::vector<double> solution;
-  for (std::size_t k = 0; k < n; ++k) {
-    solution.push_back(rows[k][n] / rows[k][k]);
-  }
-  return solution;
 }
 
 // Returns the achievement of a point along the axis `axis`: small if the point lies near that axis
@@ -112,27 +82,30 @@ void FrontScale::update(std::span<const std::vector<double>> objectives, std::si
       }
     }
   }
-  std::vector<std::vector<double>> rows = extremes_;
   std::vector<double> worst = objectives.front();
   for (const std::vector<double>& one : objectives.first(first_front)) {
     for (std::size_t m = 0; m < n; ++m) {
       worst[m] = std::max(worst[m], one[m]);
     }
   }
-  for (std::vector<double>& row : rows) {
-    for (std::size_t m = 0; m < n; ++m) {
-      row[m] -= ideal_[m];
+  const auto size = static_cast<Eigen::Index>(n);
+  Eigen::MatrixXd rows(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index m = 0; m < size; ++m) {
+      const auto axis = static_cast<std::size_t>(m);
+      rows(i, m) = extremes_[static_cast<std::size_t>(i)][axis] - ideal_[axis];
     }
   }
-  const std::optional<std::vector<double>> inverses = solve_for_ones(std::move(rows));
+  // Not finite if the extreme points span no plane.
+  const Eigen::VectorXd inverses = rows.partialPivLu().solve(Eigen::VectorXd::Ones(size));
   // A plane that meets an axis below the ideal point or far above the front says nothing about the
   // front's range. The front itself then gives the ranges.
   constexpr double kFar = 10;
   ranges_.resize(n);
-  bool is_sound = inverses.has_value();
+  bool is_sound = true;
   for (std::size_t m = 0; m < n; ++m) {
     const double seen = worst[m] - ideal_[m];
-    ranges_[m] = is_sound ? 1 / (*inverses)[m] : 0;
+    ranges_[m] = is_sound ? 1 / inverses[static_cast<Eigen::Index>(m)] : 0;
     is_sound = is_sound && std::isfinite(ranges_[m]) && ranges_[m] > 0 && ranges_[m] <= kFar * seen;
   }
   for (std::size_t m = 0; m < n; ++m) {

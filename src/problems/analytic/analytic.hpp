@@ -65,8 +65,8 @@ struct AnalyticFunction {
   double lower = 0;  // bounds of every variable
   double upper = 0;
   std::vector<double> start = {};  // one number: the same for every variable
-  // Of the plain form; empty: the shift s; otherwise s = 0. If there are more variables than numbers,
-  // the last number counts for the others too.
+  // The minimiser of the plain form, whose shift s is then 0. If it is empty, the minimiser is s. If
+  // there are more variables than numbers, the last number counts for the others too.
   std::vector<double> minimiser = {};
   double minimum = 0;          // the value at the minimiser, without f_opt
   int bbob = 0;                // its number if it is a function of BBOB; otherwise 0

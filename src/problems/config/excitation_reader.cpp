@@ -124,15 +124,7 @@ void load_excitation(const ConfigTable& table, LoadedProblem& loaded) {
   config.position_share = its.get(kPositionShare);
   config.speed_share = its.get(kSpeedShare);
   config.effort_share = its.get(kEffortShare);
-  config.acceleration_limits = its.get(kAccelerations);
-  const std::size_t joints = config.robot.joint_count();
-  if (config.acceleration_limits.size() == 1) {
-    config.acceleration_limits.resize(joints, config.acceleration_limits.front());
-  }
-  if (!config.acceleration_limits.empty() && config.acceleration_limits.size() != joints) {
-    its.refuse(kAccelerations,
-               fmt::format("it must hold one number, or {}, one per joint of the robot", joints));
-  }
+  config.acceleration_limits = read_per_joint(its, kAccelerations, config.robot.joint_count());
   config.floor_m = its.find(kExcitationFloor);
   if (config.floor_m) {
     check_floor(its, kExcitationFloor, *config.floor_m, config.robot);

@@ -135,23 +135,6 @@ const Setting<double> kDeflectionLimit{
     "deflection_limit_m", kSize_m, kNoDefault,
     "how far the tip of the stretched arm may sag under gravity across it (default: no limit)"};
 
-// Returns one number per joint: those of the setting, or else of `otherwise`.
-std::vector<double> read_per_joint(const ConfigTable& table,
-                                   const Setting<std::vector<double>>& setting, std::size_t joints,
-                                   std::vector<double> otherwise) {
-  std::vector<double> values = table.get(setting);
-  if (values.empty()) {
-    return otherwise;
-  }
-  if (values.size() == 1) {
-    values.resize(joints, values.front());
-  }
-  if (values.size() != joints) {
-    table.refuse(setting, fmt::format("it must hold one number, or {}, one per joint", joints));
-  }
-  return values;
-}
-
 std::optional<MotionBounds> read_bounds(const ConfigTable& table,
                                         const Setting<std::vector<double>>& setting) {
   const auto values = table.find(setting);
@@ -284,8 +267,8 @@ void read_tubes(const ConfigTable& table, MotionConfig& config) {
   const std::size_t links = config.robot.joint_count();
   MotionTubes& tubes = config.tubes;
   tubes.material = {table.get(kYoungsModulus), table.get(kTubeDensity)};
-  const std::vector<double> diameters = read_per_joint(table, kDiameters, links, {});
-  const std::vector<double> walls = read_per_joint(table, kWalls, links, {});
+  const std::vector<double> diameters = read_per_joint(table, kDiameters, links);
+  const std::vector<double> walls = read_per_joint(table, kWalls, links);
   tubes.length_m = read_bounds(table, kLengthBounds);
   tubes.diameter_m = read_bounds(table, kDiameterBounds);
   tubes.wall_m = read_bounds(table, kWallBounds);
@@ -410,13 +393,6 @@ void load_motion(const ConfigTable& table, LoadedProblem& loaded) {
   const std::filesystem::path urdf = resolve_named(robot, kRobotUrdf, "robots");
   config.robot = read_robot(robot, loaded).robot;
   const std::size_t joints = config.robot.joint_count();
-  for (const Joint& joint : config.robot.joints) {
-    if (joint.plant.unactuated) {
-      robot.refuse(kRobotUrdf, fmt::format("joint '{}' has no motor, so no motion can be planned "
-                                           "for it; make it a fixed joint",
-                                           sanitize(joint.name)));
-    }
-  }
   const ConfigTable its = table.get_table(kMotionSettings);
   read_payload(its, config.robot);
   config.gravity_m_per_s2 =
@@ -438,10 +414,13 @@ void load_motion(const ConfigTable& table, LoadedProblem& loaded) {
     speeds[i] = joint.speed_limit > 0 ? joint.speed_limit : kUnlimited;
     efforts[i] = joint.effort_limit > 0 ? joint.effort_limit : kUnlimited;
   }
-  config.limits = {read_per_joint(its, kSpeedLimits, joints, speeds),
-                   read_per_joint(its, kAccelerationLimits, joints, unlimited),
-                   read_per_joint(its, kJerkLimits, joints, unlimited),
-                   read_per_joint(its, kEffortLimits, joints, efforts)};
+  const auto read_limits = [&](const Setting<std::vector<double>>& setting,
+                               const std::vector<double>& otherwise) {
+    const std::vector<double> values = read_per_joint(its, setting, joints);
+    return values.empty() ? otherwise : values;
+  };
+  config.limits = {read_limits(kSpeedLimits, speeds), read_limits(kAccelerationLimits, unlimited),
+                   read_limits(kJerkLimits, unlimited), read_limits(kEffortLimits, efforts)};
   config.tool_speed_limit_m_per_s = its.find(kToolSpeedLimit);
   config.least_clearance_m = its.find(kLeastClearance);
   const std::vector<ConfigTable> points = its.get_tables_or_empty(kMotionPointSettings);

@@ -174,6 +174,10 @@ void check_length(const ConfigTable& table, const ConfigTable& control,
 // Returns three numbers. `what` completes the message "it must be three numbers: ".
 Eigen::Vector3d read_vector(const ConfigTable& table, const Setting<std::vector<double>>& setting,
                             std::string_view what);
+// Returns one number per joint. A single number of the file counts for all joints; an empty list stays
+// empty. Refuses lists of other lengths.
+std::vector<double> read_per_joint(const ConfigTable& table,
+                                   const Setting<std::vector<double>>& setting, std::size_t joints);
 // Returns three numbers as a unit vector. Refuses the zero vector.
 Eigen::Vector3d read_direction(const ConfigTable& table,
                                const Setting<std::vector<double>>& setting);

@@ -211,6 +211,20 @@ Eigen::Vector3d read_vector(const ConfigTable& table, const Setting<std::vector<
   return {numbers[0], numbers[1], numbers[2]};
 }
 
+std::vector<double> read_per_joint(const ConfigTable& table,
+                                   const Setting<std::vector<double>>& setting,
+                                   std::size_t joints) {
+  std::vector<double> values = table.get(setting);
+  if (values.size() == 1) {
+    values.resize(joints, values.front());
+  }
+  if (!values.empty() && values.size() != joints) {
+    table.refuse(setting,
+                 fmt::format("it must hold one number, or {}, one per joint of the robot", joints));
+  }
+  return values;
+}
+
 Eigen::Vector3d read_direction(const ConfigTable& table,
                                const Setting<std::vector<double>>& setting) {
   const Eigen::Vector3d vector = read_vector(table, setting, "a direction's x, y and z");

@@ -106,13 +106,15 @@ struct MotionConfig {
 // A motion, and what was found of it.
 struct AssessedPlan {
   MotionCurve curve;
-  RobotModel robot;  // with its tubes
+  std::shared_ptr<const RobotModel> robot;  // with its tubes
   Eigen::VectorXd times_s;
   Eigen::MatrixXd efforts;  // one row per sample, one column per joint
   std::vector<double> quantities;
   std::vector<double> constraints;
   ArmClearance::Nearest nearest;  // and when
   double nearest_s = 0;
+
+  double& quantity(MotionQuantity which) { return quantities[static_cast<std::size_t>(which)]; }
 };
 
 class MotionProblem final : public Problem {
@@ -142,7 +144,9 @@ class MotionProblem final : public Problem {
   std::optional<double> calc_bound(const AssessedPlan& plan) const;
 
  private:
-  RobotModel make_arm(std::span<const double> x, std::vector<Tube>& tubes) const;
+  // Returns the arm of `x` and its tubes: the nominal one if the arm is no variable.
+  std::shared_ptr<const RobotModel> make_arm(std::span<const double> x,
+                                             std::vector<Tube>& tubes) const;
   bool find_points(const RobotModel& robot, std::span<const double> x, Eigen::MatrixXd& points,
                    std::string& reason) const;
   void measure(std::span<const Tube> tubes, AssessedPlan& plan) const;
@@ -155,6 +159,7 @@ class MotionProblem final : public Problem {
   bool changes_arm() const { return !config_.tubes.tubes.empty(); }
 
   MotionConfig config_;
+  std::shared_ptr<const RobotModel> robot_;               // that of config_
   std::shared_ptr<const articulated::ChainModel> chain_;  // null if the arm is a variable
   double arm_length_m_ = 1;
   std::vector<double> penalty_;

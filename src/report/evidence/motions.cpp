@@ -244,4 +244,51 @@ json make_replay_set(PageSimulator& simulator, const TrackingProblem& problem,
           {"cases", std::move(replayed)}};
 }
 
+json make_given_replay_set(const ReplayText& text, const std::string& design, std::size_t robot,
+                           const TrackingTask& task, const json& effort_limits,
+                           std::span<const GivenMotion> motions) {
+  const std::size_t joints = effort_limits.size();
+  const json nothing = pack_f32({});
+  json cases = json::array();
+  for (const GivenMotion& motion : motions) {
+    const std::size_t steps = motion.q.size() / joints - 1;
+    const auto after_start = [&](const std::vector<float>& values) {
+      return pack_f32(std::span(values).subspan(joints));
+    };
+    const json moved = {{"design", text.id},
+                        {"status", "ok"},
+                        {"reason", ""},
+                        {"steps", steps},
+                        {"mean_error_m", nullptr},
+                        {"point_error_m", json::array()},
+                        {"q", after_start(motion.q)},
+                        {"effort", after_start(motion.effort)},
+                        {"error_m", nothing}};
+    cases.push_back(
+        {{"id", motion.id},
+         {"label", motion.label},
+         {"set", motion.set},
+         {"number", 0},
+         {"points_m", json::array()},
+         {"segments", json::array()},
+         {"steps", steps},
+         {"target_m", nothing},
+         {"target_q", nothing},
+         {"start_q", std::vector<float>(motion.q.begin(),
+                                        motion.q.begin() + static_cast<std::ptrdiff_t>(joints))},
+         {"motions", {moved}}});
+  }
+  return {{"id", text.id},
+          {"title", text.title},
+          {"robot", robot},
+          {"task", make_task_info(task)},
+          {"designs",
+           {{{"id", text.id},
+             {"name", design},
+             {"total_torque_n_m", nullptr},
+             {"total_force_n", nullptr},
+             {"effort_limits", effort_limits}}}},
+          {"cases", std::move(cases)}};
+}
+
 }  // namespace armwright

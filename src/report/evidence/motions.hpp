@@ -96,4 +96,18 @@ nlohmann::json make_replay_set(PageSimulator& simulator, const TrackingProblem& 
                                std::span<const NamedDesign> designs,
                                std::span<const ReplayRequest> cases);
 
+// A motion that no simulation made, such as a recorded one. Rows are one period of the task apart, and
+// row 0 is the start; a row has one number per joint (rad or m; N m or N).
+struct GivenMotion {
+  std::string id, label, set;
+  std::vector<float> q, effort;
+};
+
+// Returns ReplaySet of motions without targets, all of the same arm. `design` is the name that the page
+// shows, and `robot` the index of the arm, whose joints have `effort_limits` (pairs of numbers or null).
+nlohmann::json make_given_replay_set(const ReplayText& text, const std::string& design,
+                                     std::size_t robot, const TrackingTask& task,
+                                     const nlohmann::json& effort_limits,
+                                     std::span<const GivenMotion> motions);
+
 }  // namespace armwright

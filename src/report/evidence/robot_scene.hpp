@@ -26,6 +26,11 @@ std::size_t add_robot(const RobotModel& model, const TrackingTask& task,
                       const std::filesystem::path& urdf_folder, nlohmann::json& robots,
                       std::vector<std::string>& notes);
 
+// Return a sphere, and a cylinder between two points (m).
+VisualShape make_ball(const Eigen::Vector3d& centre, double radius, const Eigen::Vector4d& rgba);
+VisualShape make_cylinder(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double radius,
+                          const Eigen::Vector4d& rgba);
+
 // Returns plain shapes for each body, the base first, for a robot whose description has none: a
 // tube with round ends from a joint to the next one or to the tip, a drum around the axis of a
 // revolute joint, a rod along the axis of a prismatic one. The thickness follows from the length of

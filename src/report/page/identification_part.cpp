@@ -121,37 +121,14 @@ std::vector<float> resample(const RecordedMotion& motion, const std::vector<floa
   return all;
 }
 
-// Returns ReplayCase of a motion. Row 0 of the log is the start. There is no target.
-json make_recorded_case(const RecordedMotion& motion, double period_s) {
+GivenMotion make_recorded_motion(const RecordedMotion& motion, double period_s) {
   const double duration_s = motion.period_s * static_cast<double>(motion.rows - 1);
-  const auto steps = static_cast<std::size_t>(duration_s / period_s + 1e-6);
-  const std::vector<float> q = resample(motion, motion.positions, period_s, steps + 1);
-  const std::vector<float> effort = resample(motion, motion.recorded, period_s, steps + 1);
-  const auto after_start = [&](const std::vector<float>& values) {
-    return pack_f32(std::span(values).subspan(motion.joints));
-  };
-  const json nothing = pack_f32({});
-  const json moved = {{"design", kRecordedDesign},
-                      {"status", "ok"},
-                      {"reason", ""},
-                      {"steps", steps},
-                      {"mean_error_m", nullptr},
-                      {"point_error_m", json::array()},
-                      {"q", after_start(q)},
-                      {"effort", after_start(effort)},
-                      {"error_m", nothing}};
-  return {
-      {"id", motion.id},
-      {"label", fmt::format("{}, {}", motion.log, motion.is_held_back ? "held back" : "fitted")},
-      {"set", "logs"},
-      {"number", 0},
-      {"points_m", json::array()},
-      {"segments", json::array()},
-      {"steps", steps},
-      {"target_m", nothing},
-      {"target_q", nothing},
-      {"start_q", std::vector<float>(q.begin(), q.begin() + static_cast<long>(motion.joints))},
-      {"motions", {moved}}};
+  const std::size_t rows = static_cast<std::size_t>(duration_s / period_s + 1e-6) + 1;
+  return {.id = motion.id,
+          .label = fmt::format("{}, {}", motion.log, motion.is_held_back ? "held back" : "fitted"),
+          .set = "logs",
+          .q = resample(motion, motion.positions, period_s, rows),
+          .effort = resample(motion, motion.recorded, period_s, rows)};
 }
 
 // Adds the arm and its recorded motions, or a note if its file is gone. All cases of a replay have
@@ -179,25 +156,16 @@ void add_recorded_replay(const RecordedRun& run, const std::vector<RecordedMotio
   }
   const std::size_t index =
       add_robot(robot, task, run.find_urdf().parent_path(), page["robots"], notes);
-  json cases = json::array();
+  std::vector<GivenMotion> shown;
   for (const bool held_back : {true, false}) {  // readers want to see first what was not fitted
     for (const RecordedMotion& motion : motions) {
       if (motion.is_held_back == held_back) {
-        cases.push_back(make_recorded_case(motion, task.control_period_s));
+        shown.push_back(make_recorded_motion(motion, task.control_period_s));
       }
     }
   }
-  page["replays"].push_back({{"id", kRecordedDesign},
-                             {"title", "Recorded motions"},
-                             {"robot", index},
-                             {"task", make_task_info(task)},
-                             {"designs",
-                              {{{"id", kRecordedDesign},
-                                {"name", "as recorded"},
-                                {"total_torque_n_m", nullptr},
-                                {"total_force_n", nullptr},
-                                {"effort_limits", limits}}}},
-                             {"cases", cases}});
+  page["replays"].push_back(make_given_replay_set({kRecordedDesign, "Recorded motions"},
+                                                  "as recorded", index, task, limits, shown));
 }
 
 std::string join_logs(const json& set) {

@@ -50,6 +50,14 @@ double ArmEquations::mass(std::size_t row, std::size_t column) const {
       .v;
 }
 
+double ArmEquations::calc_effort(std::size_t joint, std::span<const double> acceleration) const {
+  double effort = bias(joint);
+  for (std::size_t k = 0; k < acceleration.size(); ++k) {
+    effort += mass(joint, k) * acceleration[k];
+  }
+  return effort;
+}
+
 std::vector<double> ArmEquations::calc_holding_efforts(const RobotModel& robot,
                                                        std::span<const double> q) {
   set(q, std::vector<double>(q.size(), 0));

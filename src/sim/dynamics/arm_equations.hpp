@@ -22,6 +22,9 @@ class ArmEquations {
   double bias(std::size_t joint) const;
   double mass(std::size_t row, std::size_t column) const;
 
+  // Returns the effort on the links that gives the joints these accelerations: sum_k M_ik a_k + b_i.
+  double calc_effort(std::size_t joint, std::span<const double> acceleration) const;
+
   // Returns the efforts with which the motors of `robot`, of which the chain is the model, hold it at
   // rest: tau = b(q, 0) + f(0) - s(q), with friction f and counterbalance s (joint_plant.hpp).
   // Friction itself helps to hold; f(0) is its offset. Elastic joints count as rigid.

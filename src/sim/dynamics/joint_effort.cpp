@@ -24,6 +24,12 @@ double calc_counterbalance(const Joint& joint, double position) {
              : calc_balance(grid, Number(position), joint.kind == JointKind::prismatic).v;
 }
 
+double calc_plant_effort(const Joint& joint, double position, double rate, double acceleration) {
+  const JointPlant& its = joint.plant;
+  return its.armature * acceleration + its.offset + calc_friction_chord(its, rate) * rate -
+         calc_counterbalance(joint, position);
+}
+
 BalanceGrid make_balance_grid(const Joint& joint) {
   const Counterbalance& its = joint.plant.counterbalance;
   if (its.efforts.empty()) {

@@ -13,6 +13,10 @@ double calc_friction_chord(const JointPlant& plant, double rate);
 // may have whole turns too many.
 double calc_counterbalance(const Joint& joint, double position);
 
+// Returns the effort that the joint's plant takes from the motor, beside the links: A a + f(v) - s(q)
+// (sim/robot/joint_plant.hpp).
+double calc_plant_effort(const Joint& joint, double position, double rate, double acceleration);
+
 // Returns the grid of a joint's counterbalance, which must outlive it. Without efforts all is 0.
 BalanceGrid make_balance_grid(const Joint& joint);
 

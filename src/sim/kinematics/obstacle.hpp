@@ -32,7 +32,7 @@ struct Obstacle {
   std::string name;
   ObstacleKind kind = ObstacleKind::sphere;
   Capsule capsule;  // of a sphere and a capsule
-  // Of a box and a cylinder: its centre and axes. A cylinder's axis is z.
+  // The centre and the axes of a box or a cylinder. The axis of a cylinder is z.
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   Eigen::Vector3d half_m = Eigen::Vector3d::Zero();  // half edges; radius, radius, half height
 

@@ -145,7 +145,7 @@ void MotionCurve::add_piece(double h_s) {
 void MotionCurve::set_quintic(std::size_t joint, const Eigen::Vector3d& from,
                               const Eigen::Vector3d& to) {
   const double h = knots_s_.back() - knots_s_[knots_s_.size() - 2];
-  // What the end is away from the parabola of the beginning, in units of a piece of length 1.
+  // The distance of the end from the parabola of the beginning, in units of a piece of length 1.
   const double d = to[0] - (from[0] + h * (from[1] + h * from[2] / 2));
   const double dv = (to[1] - (from[1] + h * from[2])) * h;
   const double da = (to[2] - from[2]) * h * h;

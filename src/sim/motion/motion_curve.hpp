@@ -40,7 +40,7 @@ const std::vector<std::string>& curve_kind_names();  // each in the order of the
 const std::vector<std::string>& spline_ends_names();
 const std::vector<std::string>& rest_profile_names();
 
-// What a curve is made of, besides points and intervals.
+// The form of a curve: all that decides it beside points and intervals.
 struct CurveForm {
   CurveKind kind = CurveKind::cubic;
   SplineEnds ends = SplineEnds::rest;          // of cubic splines

@@ -21,18 +21,6 @@
 #include "sim/tracking/tracking_setup.hpp"
 
 namespace armwright {
-namespace {
-
-// Returns the effort that a joint's plant takes from the motor.
-double calc_plant_effort(const Joint& joint, double q, double rate, double acceleration) {
-  const JointPlant& its = joint.plant;
-  return its.armature * acceleration + its.offset +
-         articulated::calc_friction_chord(its, rate) * rate -
-         articulated::calc_counterbalance(joint, q);
-}
-
-}  // namespace
-
 std::vector<double> TrackingSetup::calc_holding_efforts(std::span<const double> q) const {
   return articulated::ArmEquations(*chain_).calc_holding_efforts(robot_, q);
 }
@@ -70,13 +58,10 @@ void TrackingSetup::fill_efforts(TargetTable& table) const {
     equations.set(before, rate);
     double* const efforts = table.feed_forward_effort.data() + static_cast<std::size_t>(step) * n;
     for (std::size_t i = 0; i < n; ++i) {
-      double effort = equations.bias(i);
-      for (std::size_t j = 0; j < n; ++j) {
-        effort += equations.mass(i, j) * acceleration[j];
-      }
-      efforts[i] = effort;
+      efforts[i] = equations.calc_effort(i, acceleration);
       if (has_plant) {
-        efforts[i] += calc_plant_effort(robot_.joints[i], before[i], next[i], acceleration[i]);
+        efforts[i] +=
+            articulated::calc_plant_effort(robot_.joints[i], before[i], next[i], acceleration[i]);
       }
     }
     rate = next;

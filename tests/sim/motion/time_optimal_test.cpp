@@ -5,42 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "line_arm.hpp"
+
 namespace armwright {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-// Joint 1 about z, joints 2 and 3 horizontal, two slender rods of 1 m and 0.5 kg.
-RobotModel make_line_arm() {
-  RobotModel robot;
-  robot.joints.resize(3);
-  robot.links.resize(3);
-  for (Joint& joint : robot.joints) {
-    joint.lower = -kNoLimit;
-    joint.upper = kNoLimit;
-  }
-  robot.joints[1].axis = robot.joints[2].axis = -Eigen::Vector3d::UnitY();
-  robot.joints[2].origin.translation() = robot.tip_pose.translation() = Eigen::Vector3d::UnitX();
-  for (std::size_t link : {1, 2}) {
-    robot.links[link].inertial = {
-        0.5, {0.5, 0, 0}, Eigen::Vector3d(0, 0.5 / 12, 0.5 / 12).asDiagonal()};
-  }
-  return robot;
-}
-
-Eigen::VectorXd find_posture(double s) {
-  const Eigen::Vector3d p(1.2, -0.6 + 1.2 * s, 0.4 + 0.4 * s);
-  const double r = std::hypot(p.x(), p.y());
-  const double elbow = -std::acos((r * r + p.z() * p.z()) / 2 - 1);
-  Eigen::VectorXd q(3);
-  q << std::atan2(p.y(), p.x()), std::atan2(p.z(), r) - elbow / 2, elbow;
-  return q;
-}
-
 double find_time(double gravity, std::size_t intervals, std::vector<double> efforts) {
   const std::vector<double> none(3, kNoLimit);
   const LeastTime least =
-      calc_least_time(make_line_arm(), gravity, sample_path(find_posture, intervals),
+      calc_least_time(make_line_arm(), gravity, sample_path(find_line_posture, intervals),
                       {none, none, none, std::move(efforts)});
   EXPECT_FALSE(least.stuck_place);
   return least.duration_s;
@@ -85,8 +60,9 @@ TEST(TimeOptimal, OneJointAcceleratesAndBrakes) {
 
 TEST(TimeOptimal, NamesThePlaceAndTheJointThatCannotHoldTheArm) {
   const std::vector<double> none(3, kNoLimit);
-  const LeastTime least = calc_least_time(make_line_arm(), 9.80665, sample_path(find_posture, 100),
-                                          {none, none, none, {10, 5, 4}});
+  const LeastTime least =
+      calc_least_time(make_line_arm(), 9.80665, sample_path(find_line_posture, 100),
+                      {none, none, none, {10, 5, 4}});
   ASSERT_TRUE(least.stuck_place);
   EXPECT_EQ(least.stuck_joint, 1u);
   EXPECT_EQ(least.duration_s, 0);
