@@ -297,31 +297,10 @@ void read_tubes(const ConfigTable& table, MotionConfig& config) {
 
 void read_motion_objective(const ConfigTable& table, MotionConfig& config) {
   config.is_front = table.get_or(kObjectiveKind.among({"sum", "front"}), "sum") == "front";
-  const std::vector<std::string> names = table.get_or(kObjectiveQuantities, {"duration"});
-  const std::vector<double> weights = table.get(kObjectiveWeights),
-                            scales = table.get(kObjectiveScales);
-  for (const auto& [setting, values] :
-       {std::pair{&kObjectiveWeights, &weights}, std::pair{&kObjectiveScales, &scales}}) {
-    if (!values->empty() && values->size() != names.size()) {
-      table.refuse(*setting,
-                   fmt::format("it must hold {} numbers, one per quantity", names.size()));
-    }
-  }
-  if (config.is_front && names.size() < 2) {
-    table.refuse(kObjectiveQuantities,
-                 "a front needs at least two quantities; for one, leave out objective.kind");
-  }
-  config.objective.clear();
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto& known = motion_quantity_names();
-    const auto found = std::ranges::find(known, names[i]);
-    if (found == known.end()) {
-      table.refuse(kObjectiveQuantities, describe_unknown("quantity", names[i], known));
-    }
-    if (std::ranges::count(names, names[i]) > 1) {
-      table.refuse(kObjectiveQuantities, fmt::format("'{}' stands there twice", names[i]));
-    }
-    const auto quantity = static_cast<MotionQuantity>(found - known.begin());
+  config.objective = read_quantities(table, table.get_or(kObjectiveQuantities, {"duration"}),
+                                     motion_quantity_names(), config.is_front);
+  for (const WeightedQuantity& term : config.objective) {
+    const auto quantity = static_cast<MotionQuantity>(term.quantity);
     if (quantity == MotionQuantity::clearance && !config.clearance) {
       table.refuse(kObjectiveQuantities,
                    "there is nothing to be clear of; add an [[obstacle]], or set "
@@ -330,11 +309,6 @@ void read_motion_objective(const ConfigTable& table, MotionConfig& config) {
     if (quantity == MotionQuantity::deflection && config.tubes.tubes.empty()) {
       table.refuse(kObjectiveQuantities, "only arms of [tubes] have a deflection");
     }
-    config.objective.push_back(
-        {quantity, weights.empty() ? 1 : weights[i], scales.empty() ? 1 : scales[i]});
-  }
-  if (names.empty()) {
-    table.refuse(kObjectiveQuantities, "it must name at least one quantity");
   }
 }
 

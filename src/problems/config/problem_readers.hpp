@@ -257,8 +257,16 @@ TestCase read_motion_case(const std::filesystem::path& file, const RobotModel& r
 extern const SettingTable kObjectiveSettings;
 extern const Setting<std::string> kObjectiveKind;
 extern const Setting<std::vector<std::string>> kObjectiveQuantities;
-extern const Setting<std::vector<double>> kObjectiveWeights, kObjectiveScales;
+// Reads the weights and scales of the quantities `names`; their places are those in `known`. Refuses
+// names that are not there, or twice, and a front of less than two.
+std::vector<WeightedQuantity> read_quantities(const ConfigTable& table,
+                                              const std::vector<std::string>& names,
+                                              const std::vector<std::string>& known,
+                                              bool is_front);
+// Reads the objective, without the quantities of a front.
 TrackingObjective read_objective(const ConfigTable& table);
+// Reads the quantities of a front. The variables and the requirements must be there.
+void read_front(const ConfigTable& table, TrackingConfig& config);
 // Refuses, in `table`, limits that no design within the bounds can meet, or that every design
 // meets.
 void check_limits(const ConfigTable& table, const TrackingConfig& config);
@@ -307,7 +315,7 @@ void check_load(const ConfigTable& task, const ConfigTable& table, const Trackin
 // requirement_reader.cpp: [[requirement]] (requirement.hpp)
 
 extern const SettingTable kRequirementSettings;
-// Reads the requirements for the robot, task, workspace, start and objective of `config`.
+// Reads the requirements for the robot, task, workspace and start of `config`.
 std::vector<Requirement> read_requirements(std::span<const ConfigTable> tables,
                                            const TrackingConfig& config);
 

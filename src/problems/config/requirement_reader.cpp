@@ -51,6 +51,7 @@ const std::array kRequirementLimits{
     Setting<double>{"limit_m_per_s", kLimit, kNoDefault,
                     "limit of joint_speed of joints that slide"},
     Setting<double>{"limit_j", kLimit, kNoDefault, "limit of energy"},
+    Setting<double>{"limit_rad2_per_s5", kLimit, kNoDefault, "limit of jerk"},
 };
 
 std::optional<std::size_t> read_joint(const ConfigTable& table, const RequirementRow& row,
@@ -176,12 +177,6 @@ Requirement read_one(const ConfigTable& table, const TrackingConfig& config) {
     requirement.band_m = table.get(kRequirementBand);
   }
   requirement.is_constraint = table.get(kRequirementUse) == "constraint";
-  if (requirement.is_constraint &&
-      config.objective.kind == TrackingObjective::Kind::error_vs_torque) {
-    table.refuse(kRequirementUse,
-                 "objective.kind error_vs_torque has two objectives, beside which there are no "
-                 "constraints; use \"report\", or another kind of objective");
-  }
   return requirement;
 }
 

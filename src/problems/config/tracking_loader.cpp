@@ -456,8 +456,9 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
                         {config.robot, config.start, config.fitted_plant}, loaded);
   check_elasticity(physics, config, read.plant);
   check_load(task, table.get_table_or_empty(kPerturbationSettings), config);
-  check_limits(table.get_table_or_empty(kObjectiveSettings), config);
   config.requirements = read_requirements(table.get_tables_or_empty(kRequirementSettings), config);
+  read_front(table.get_table_or_empty(kObjectiveSettings), config);
+  check_limits(table.get_table_or_empty(kObjectiveSettings), config);
   loaded.problem = make_tracking(std::move(config), variables, urdf);
   settle_solver(task, loaded.tracking()->setup());
 }

@@ -72,10 +72,11 @@ MotionProblem::MotionProblem(MotionConfig config)
   description_.has_single_case = true;
   std::vector<double> weights;
   std::vector<std::string> names;
-  for (const MotionTerm& term : config_.objective) {
-    Quantity quantity = describe_quantity(term.quantity);
+  for (const WeightedQuantity& term : config_.objective) {
+    const auto which = static_cast<MotionQuantity>(term.quantity);
+    Quantity quantity = describe_quantity(which);
     names.push_back(quantity.name);
-    if (term.quantity == MotionQuantity::clearance) {
+    if (which == MotionQuantity::clearance) {
       quantity.name = "negative clearance";
     }
     description_.objectives.push_back(quantity);
@@ -207,9 +208,9 @@ void MotionProblem::make_variables(const Eigen::MatrixXd& start) {
 std::vector<double> MotionProblem::calc_objectives(std::span<const double> quantities) const {
   std::vector<double> objectives;
   double sum = 0;
-  for (const MotionTerm& term : config_.objective) {
-    const double sign = term.quantity == MotionQuantity::clearance ? -1 : 1;
-    const double value = sign * quantities[static_cast<std::size_t>(term.quantity)];
+  for (const WeightedQuantity& term : config_.objective) {
+    const bool is_large = term.quantity == static_cast<std::size_t>(MotionQuantity::clearance);
+    const double value = (is_large ? -1 : 1) * quantities[term.quantity];
     objectives.push_back(value);
     sum += term.weight * value / term.scale;
   }

@@ -37,6 +37,7 @@
 #include <vector>
 
 #include "problems/interface/problem.hpp"
+#include "problems/interface/weighted_quantity.hpp"
 #include "problems/logs/motion_file.hpp"
 #include "sim/dynamics/chain_model.hpp"
 #include "sim/kinematics/arm_clearance.hpp"
@@ -67,12 +68,6 @@ struct MotionPoint {
   bool has_turn = false;  // whether the tool's orientation counts
 };
 
-// One term of the objective, or one objective of a front.
-struct MotionTerm {
-  MotionQuantity quantity = MotionQuantity::duration;
-  double weight = 1, scale = 1;
-};
-
 // The bounds of a variable; both the same: it is no variable.
 struct MotionBounds {
   double lower = 0, upper = 0;
@@ -96,7 +91,7 @@ struct MotionConfig {
   JointLimits limits;  // one number per joint, infinite where there is none
   bool limits_range = true;
   std::optional<double> tool_speed_limit_m_per_s, least_clearance_m, deflection_limit_m;
-  std::vector<MotionTerm> objective{MotionTerm{}};
+  std::vector<WeightedQuantity> objective{WeightedQuantity{}};  // of MotionQuantity
   bool is_front = false;
   std::size_t samples = 201;
   std::shared_ptr<const ArmClearance> clearance;  // null: there is nothing to stay clear of

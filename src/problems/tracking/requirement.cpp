@@ -61,6 +61,11 @@ RequiredValue measure_one(const Requirement& requirement, const TrackingSetup& s
                           calc_joint_speeds(setup.robot(), targets, result, task.control_period_s));
     case Q::energy:
       return {.value = result.energy_j, .joint = {}, .point = {}};
+    case Q::jerk:
+      return {
+          .value = calc_jerk_integral(setup.robot(), targets, result, task.control_period_s),
+          .joint = {},
+          .point = {}};
     case Q::tip_error:
       for (std::size_t k = get_first_counted(task); k < result.point_error_m.size(); ++k) {
         keep_larger(worst, result.point_error_m[k], k);
@@ -103,7 +108,8 @@ MeasuredCase measure(const TrackingSetup& setup, const TrackingJob& job, Trackin
 bool needs_motion(std::span<const Requirement> requirements) {
   return std::ranges::any_of(requirements, [](const Requirement& requirement) {
     return get_requirement_row(requirement.quantity).of_moves ||
-           requirement.quantity == RequiredQuantity::joint_speed;
+           requirement.quantity == RequiredQuantity::joint_speed ||
+           requirement.quantity == RequiredQuantity::jerk;
   });
 }
 
@@ -122,6 +128,7 @@ const std::vector<RequirementRow>& requirement_table() {
       {Q::energy, "energy", "energy", "limit_j", "J"},
       {Q::joint_speed, "joint_speed", "joint speed", "limit_rad_per_s", "rad/s", true, false,
        "joint speed", "limit_m_per_s", "m/s"},
+      {Q::jerk, "jerk", "jerk", "limit_rad2_per_s5", "rad^2/s^5"},
   };
   return table;
 }

@@ -6,6 +6,7 @@
 //   tip_error     the largest error of such a point, of any move or path
 //   peak_torque, rms_torque, joint_speed  of the named joint, or the largest of all joints
 //   energy        the positive mechanical work of the joints on the case
+//   jerk          the sum over the joints of the integral of the squared jerk
 //
 // Every requirement is one metric of an evaluation, such as "requirement.overshoot". A requirement
 // that is used as a constraint adds g = value / limit - 1, after the constraints of the objective.
@@ -38,7 +39,8 @@ enum class RequiredQuantity : std::uint8_t {
   peak_torque,
   rms_torque,
   energy,
-  joint_speed
+  joint_speed,
+  jerk
 };
 
 // A ratio of value to limit that no arm exceeds while it follows its target.

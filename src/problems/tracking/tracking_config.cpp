@@ -189,24 +189,33 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
     description.variables.push_back(make_variable(config, parameter));
   }
   const TrackingObjective& objective = config.objective;
-  description.objectives = describe_objectives(objective);
+  std::vector<Quantity> required;
+  for (const Requirement& requirement : config.requirements) {
+    required.push_back(describe_requirement(requirement, config.robot));
+  }
+  description.objectives = describe_objectives(objective, required);
   description.resolution = calc_resolution(objective);
   switch (objective.kind) {
     case TrackingObjective::Kind::error:
     case TrackingObjective::Kind::error_and_torque:
       break;
-    case TrackingObjective::Kind::error_vs_torque:
-      description.objective_weights = {1 / objective.error_scale_m,
-                                       objective.torque_weight / objective.torque_scale_n_m};
+    case TrackingObjective::Kind::front:
+      for (const WeightedQuantity& term : objective.front) {
+        description.objective_weights.push_back(term.weight / term.scale);
+      }
       break;
     case TrackingObjective::Kind::torque_with_error_limit:
-      description.limits = {{{describe_error(objective), "m"}, objective.error_limit_m}};
       description.violation_scale = objective.logarithm ? 1 : objective.torque_scale_n_m;
       break;
     case TrackingObjective::Kind::error_with_torque_limit:
-      description.limits = {{{"total torque", "N m"}, objective.total_torque_limit_n_m}};
       description.violation_scale = objective.logarithm ? 1 : objective.error_scale_m;
       break;
+  }
+  if (objective.error_limit_m > 0) {
+    description.limits.push_back({{describe_error(objective), "m"}, objective.error_limit_m});
+  }
+  if (objective.total_torque_limit_n_m > 0) {
+    description.limits.push_back({{"total torque", "N m"}, objective.total_torque_limit_n_m});
   }
   description.metrics = {{"error", "m"},
                          {"total_torque", "N m"},
@@ -227,7 +236,7 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
   const bool objective_has_limit = !description.limits.empty();
   describe_requirements(config.requirements, config.robot, description);
   if (!description.limits.empty() && !objective_has_limit && !objective.logarithm &&
-      !objective.is_sum()) {
+      !objective.is_sum() && objective.kind != TrackingObjective::Kind::front) {
     description.violation_scale = objective.error_scale_m;
   }
   for (const Limit& limit : description.limits) {
@@ -236,7 +245,10 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
   description.has_residuals = objective.has_residuals() && description.limits.empty();
   if (!description.has_residuals && description.limits.empty()) {
     description.residuals_advice =
-        "only objective.statistic = \"mean\" has residuals; choose it or another optimizer";
+        objective.statistic == TrackingObjective::Statistic::mean
+            ? "only fronts of error, torque, energy and duration, with the error among them, have "
+              "residuals; change objective.quantities or choose another optimizer"
+            : "only objective.statistic = \"mean\" has residuals; choose it or another optimizer";
   }
   return description;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/text.hpp"
 
@@ -68,14 +69,123 @@ std::string describe_sum(const TrackingObjective& objective) {
   return fmt::format("{} and {}", join(parts, ", "), last);
 }
 
+constexpr auto kFirstRequired = static_cast<std::size_t>(TrackingQuantity::requirement);
+
+// Returns the name and unit of a quantity of a front.
+Quantity describe_term(const TrackingObjective& objective, const WeightedQuantity& term,
+                       std::span<const Quantity> required) {
+  switch (static_cast<TrackingQuantity>(term.quantity)) {
+    case TrackingQuantity::error:
+      return {describe_error(objective), "m"};
+    case TrackingQuantity::torque:
+      return {"total torque", "N m"};
+    case TrackingQuantity::energy:
+      return {"energy", "J"};
+    case TrackingQuantity::duration:
+      return {"duration", "s"};
+    case TrackingQuantity::peak_torque:
+      return {"peak torque", "N m"};
+    case TrackingQuantity::rms_torque:
+      return {"RMS torque", "N m"};
+    case TrackingQuantity::moving_mass:
+      return {"moving mass", "kg"};
+    default:
+      return required[term.quantity - kFirstRequired];
+  }
+}
+
+double get_term(const WeightedQuantity& term, const ObjectiveTerms& terms) {
+  switch (static_cast<TrackingQuantity>(term.quantity)) {
+    case TrackingQuantity::error:
+      return terms.error_m;
+    case TrackingQuantity::torque:
+      return terms.torque_n_m;
+    case TrackingQuantity::energy:
+      return terms.energy_j;
+    case TrackingQuantity::duration:
+      return terms.duration_s;
+    case TrackingQuantity::peak_torque:
+      return terms.peak_torque_n_m;
+    case TrackingQuantity::rms_torque:
+      return terms.rms_torque_n_m;
+    case TrackingQuantity::moving_mass:
+      return terms.moving_mass_kg;
+    default:
+      return terms.required[term.quantity - kFirstRequired];
+  }
+}
+
 }  // namespace
+
+const std::vector<std::string>& tracking_quantity_names() {
+  static const std::vector<std::string> names = {"error",       "torque",     "energy",     "duration",
+                                                 "peak_torque", "rms_torque", "moving_mass"};
+  return names;
+}
 
 bool TrackingObjective::is_sum() const {
   return kind == Kind::error_and_torque ||
          (kind == Kind::error && (energy_weight > 0 || duration_weight > 0));
 }
 
+void TrackingObjective::set_front(std::vector<WeightedQuantity> terms) {
+  kind = Kind::front;
+  front = std::move(terms);
+  torque_weight = energy_weight = duration_weight = 0;
+  for (const WeightedQuantity& term : front) {
+    switch (static_cast<TrackingQuantity>(term.quantity)) {
+      case TrackingQuantity::error:
+        error_scale_m = term.weight > 0 ? term.scale / term.weight : error_scale_m;
+        break;
+      case TrackingQuantity::torque:
+        torque_weight = term.weight;
+        torque_scale_n_m = term.scale;
+        break;
+      case TrackingQuantity::energy:
+        energy_weight = term.weight;
+        energy_scale_j = term.scale;
+        break;
+      case TrackingQuantity::duration:
+        duration_weight = term.weight;
+        duration_scale_s = term.scale;
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+bool TrackingObjective::has_in_front(TrackingQuantity quantity) const {
+  return std::ranges::any_of(front, [&](const WeightedQuantity& term) {
+    return term.quantity == static_cast<std::size_t>(quantity);
+  });
+}
+
+bool TrackingObjective::has_torque() const {
+  switch (kind) {
+    case Kind::error:
+    case Kind::error_with_torque_limit:
+      return false;
+    case Kind::front:
+      return has_in_front(TrackingQuantity::torque);
+    case Kind::error_and_torque:
+    case Kind::torque_with_error_limit:
+      break;
+  }
+  return true;
+}
+
 bool TrackingObjective::has_residuals() const {
+  if (kind == Kind::front) {
+    // A term that is no mean of squares has no residual, and an error that does not count has no scale.
+    const auto has_residual = [](const WeightedQuantity& term) {
+      const auto quantity = static_cast<TrackingQuantity>(term.quantity);
+      return quantity == TrackingQuantity::error ? term.weight > 0
+                                                 : quantity <= TrackingQuantity::duration;
+    };
+    return statistic == Statistic::mean && has_in_front(TrackingQuantity::error) &&
+           std::ranges::all_of(front, has_residual);
+  }
   return statistic == Statistic::mean && kind != Kind::torque_with_error_limit &&
          kind != Kind::error_with_torque_limit;
 }
@@ -94,7 +204,8 @@ std::string describe_error(const TrackingObjective& objective) {
   return "error";
 }
 
-std::vector<Quantity> describe_objectives(const TrackingObjective& objective) {
+std::vector<Quantity> describe_objectives(const TrackingObjective& objective,
+                                          std::span<const Quantity> required) {
   const auto describe = [&](const std::string& name, const std::string& unit) {
     if (!objective.logarithm) {
       return Quantity{name, unit};
@@ -106,8 +217,13 @@ std::vector<Quantity> describe_objectives(const TrackingObjective& objective) {
     return {describe(describe_sum(objective), "1")};
   }
   switch (objective.kind) {
-    case Kind::error_vs_torque:
-      return {{describe_error(objective), "m"}, {"total torque", "N m"}};
+    case Kind::front: {
+      std::vector<Quantity> objectives;
+      for (const WeightedQuantity& term : objective.front) {
+        objectives.push_back(describe_term(objective, term, required));
+      }
+      return objectives;
+    }
     case Kind::torque_with_error_limit:
       return {describe("total torque", "N m")};
     case Kind::error:
@@ -121,8 +237,8 @@ std::vector<Quantity> describe_objectives(const TrackingObjective& objective) {
 double calc_resolution(const TrackingObjective& objective) {
   const double share = kErrorResolution_m / objective.error_scale_m;
   switch (objective.kind) {
-    case Kind::error_vs_torque:
-      return share;  // of the weighted sum
+    case Kind::front:  // of the weighted sum
+      return objective.has_in_front(TrackingQuantity::error) ? share : 0;
     case Kind::torque_with_error_limit:
       return objective.torque_scale_n_m * share;
     case Kind::error:
@@ -159,8 +275,13 @@ std::vector<double> calc_objectives(const TrackingObjective& objective,
     return {apply_scale(calc_sum(objective, terms))};
   }
   switch (objective.kind) {
-    case Kind::error_vs_torque:
-      return {terms.error_m, terms.torque_n_m};
+    case Kind::front: {
+      std::vector<double> objectives;
+      for (const WeightedQuantity& term : objective.front) {
+        objectives.push_back(get_term(term, terms));
+      }
+      return objectives;
+    }
     case Kind::torque_with_error_limit:
       return {apply_scale(terms.torque_n_m)};
     case Kind::error:
@@ -173,24 +294,21 @@ std::vector<double> calc_objectives(const TrackingObjective& objective,
 
 std::vector<double> calc_constraints(const TrackingObjective& objective,
                                      const ObjectiveTerms& terms) {
-  switch (objective.kind) {
-    case Kind::torque_with_error_limit:
-      return {terms.error_m / objective.error_limit_m - 1};
-    case Kind::error_with_torque_limit:
-      return {terms.torque_n_m / objective.total_torque_limit_n_m - 1};
-    case Kind::error:
-    case Kind::error_and_torque:
-    case Kind::error_vs_torque:
-      break;
+  std::vector<double> constraints;
+  if (objective.error_limit_m > 0) {
+    constraints.push_back(terms.error_m / objective.error_limit_m - 1);
   }
-  return {};
+  if (objective.total_torque_limit_n_m > 0) {
+    constraints.push_back(terms.torque_n_m / objective.total_torque_limit_n_m - 1);
+  }
+  return constraints;
 }
 
 std::vector<double> calc_residuals(const TrackingObjective& objective, const ArmDesign& design,
                                    const ObjectiveTerms& terms,
                                    std::span<const CaseOutcome> outcomes, double cases) {
-  // The residuals of error_vs_torque are those of its weighted sum.
-  const bool has_scale = objective.is_sum() || objective.kind == Kind::error_vs_torque;
+  // The residuals of a front are those of its weighted sum.
+  const bool has_scale = objective.is_sum() || objective.kind == Kind::front;
   std::vector<double> residuals;
   for (const CaseOutcome& outcome : outcomes) {
     const double share = cases * static_cast<double>(outcome.residuals.size()) *

@@ -412,11 +412,17 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   terms.torque_n_m = calc_total_effort(design);
   terms.energy_j = energy_sum_j / numbers;
   terms.duration_s = duration_sum_s / numbers;
+  terms.peak_torque_n_m = std::accumulate(peak_efforts.begin(), peak_efforts.end(), 0.0);
+  terms.rms_torque_n_m =
+      std::accumulate(rms_effort_sums.begin(), rms_effort_sums.end(), 0.0) / numbers;
+  if (has_mass_metric(config_)) {
+    terms.moving_mass_kg = calc_moving_mass_kg(make_robot(design)) + config_.task.load_kg;
+  }
+  terms.required = calc_worst_required(outcomes, case_metrics::first_requirement(joints),
+                                       config_.requirements.size());
   evaluation.objectives = calc_objectives(objective, terms);
   evaluation.constraint_values = calc_constraints(objective, terms);
-  const auto required = calc_worst_required(outcomes, case_metrics::first_requirement(joints),
-                                            config_.requirements.size());
-  append_constraints(config_.requirements, required, evaluation.constraint_values);
+  append_constraints(config_.requirements, terms.required, evaluation.constraint_values);
   // A case with an error has residuals if they were asked for and the case was not abandoned.
   const bool has_residuals =
       description_.has_residuals && std::ranges::all_of(outcomes, [](const CaseOutcome& outcome) {
@@ -433,13 +439,13 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
     evaluation.metrics.push_back(terms.duration_s);
   }
   if (has_mass_metric(config_)) {
-    evaluation.metrics.push_back(calc_moving_mass_kg(make_robot(design)) + config_.task.load_kg);
+    evaluation.metrics.push_back(terms.moving_mass_kg);
   }
   for (std::size_t i = 0; i < joints; ++i) {
     evaluation.metrics.push_back(peak_efforts[i]);
     evaluation.metrics.push_back(rms_effort_sums[i] / numbers);
   }
-  evaluation.metrics.insert(evaluation.metrics.end(), required.begin(), required.end());
+  evaluation.metrics.insert(evaluation.metrics.end(), terms.required.begin(), terms.required.end());
   return evaluation;
 }
 
@@ -448,10 +454,19 @@ std::vector<double> TrackingProblem::calc_case_objectives(std::span<const double
   ObjectiveTerms terms;
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
     const std::string& name = description_.metrics[i].name;
+    const double value = evaluation.metrics[i];
     if (name == "energy") {
-      terms.energy_j = evaluation.metrics[i];
+      terms.energy_j = value;
     } else if (name == "duration") {
-      terms.duration_s = evaluation.metrics[i];
+      terms.duration_s = value;
+    } else if (name == "moving_mass") {
+      terms.moving_mass_kg = value;
+    } else if (name.ends_with(".peak_effort")) {
+      terms.peak_torque_n_m += value;
+    } else if (name.ends_with(".rms_effort")) {
+      terms.rms_torque_n_m += value;
+    } else if (name.starts_with("requirement.")) {
+      terms.required.push_back(value);
     }
   }
   terms.torque_n_m = calc_total_effort(make_design(x));
@@ -487,7 +502,8 @@ std::optional<double> TrackingProblem::calc_lower_bound(std::span<const double> 
 std::vector<double> TrackingProblem::penalty_objectives() const {
   // The error is ten times that of a design that is cut off at the first point of every case. The
   // torque is the most that the bounds allow, or ten times that if only torque is minimised. The
-  // energy is that of this torque over one turn of every joint per move.
+  // energy is that of this torque over one turn of every joint per move. The mass is that of the
+  // largest arm, and a requirement counts more than the worst training case.
   const TrackingObjective& objective = config_.objective;
   ArmDesign strongest = config_.start;
   for (const DesignParameter& parameter : config_.parameters) {
@@ -509,6 +525,19 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
   terms.torque_n_m = (is_torque ? 10 : 1) * torque_n_m;
   terms.energy_j = torque_n_m * 2 * std::numbers::pi * config_.workspace.points;
   terms.duration_s = calc_case_duration_s(config_, slowest);
+  terms.peak_torque_n_m = terms.rms_torque_n_m = torque_n_m;
+  if (has_mass_metric(config_)) {
+    ArmDesign largest = config_.start;
+    for (std::size_t i = 0; i < config_.parameters.size(); ++i) {
+      const DecisionVariable& variable = description_.variables[i];
+      get_parameter(largest, config_.parameters[i]) =
+          is_effort(config_.parameters[i]) && variable.upper < 0 ? variable.lower : variable.upper;
+    }
+    terms.moving_mass_kg = calc_moving_mass_kg(make_robot(largest)) + config_.task.load_kg;
+  }
+  for (const Requirement& requirement : config_.requirements) {
+    terms.required.push_back(2 * kWorstRatio * requirement.limit);
+  }
   return calc_objectives(objective, terms);
 }
 

@@ -28,6 +28,22 @@ double calc_end_s(const TipMove& move) {
   return static_cast<double>(move.along_m.size() - 1) * move.period_s;
 }
 
+// Calls `use` with the number of a joint and its signed speed, for each period and joint of a recording.
+template <typename Use>
+void for_each_speed(const RobotModel& robot, const TargetTable& targets,
+                    const TrackingResult& result, double period_s, const Use& use) {
+  const std::size_t joints = targets.joints;
+  std::span<const double> before(targets.start_positions);
+  const std::span<const double> angles(result.joint_positions);
+  for (std::size_t at = 0; at + joints <= angles.size(); at += joints) {
+    const auto now = angles.subspan(at, joints);
+    for (std::size_t i = 0; i < joints; ++i) {
+      use(i, calc_displacement(robot.joints[i].kind, before[i], now[i]) / period_s);
+    }
+    before = now;
+  }
+}
+
 }  // namespace
 
 bool is_move(const Segment& segment) {
@@ -132,19 +148,25 @@ MotionErrors measure_motion(const TrackingTask& task, const TargetTable& targets
 
 std::vector<double> calc_joint_speeds(const RobotModel& robot, const TargetTable& targets,
                                       const TrackingResult& result, double period_s) {
-  const std::size_t joints = targets.joints;
-  std::vector<double> speeds(joints);
-  std::span<const double> before(targets.start_positions);
-  const std::span<const double> angles(result.joint_positions);
-  for (std::size_t at = 0; at + joints <= angles.size(); at += joints) {
-    const auto now = angles.subspan(at, joints);
-    for (std::size_t i = 0; i < joints; ++i) {
-      const double moved = calc_displacement(robot.joints[i].kind, before[i], now[i]);
-      speeds[i] = std::max(speeds[i], std::abs(moved) / period_s);
-    }
-    before = now;
-  }
+  std::vector<double> speeds(targets.joints);
+  for_each_speed(robot, targets, result, period_s, [&](std::size_t joint, double speed) {
+    speeds[joint] = std::max(speeds[joint], std::abs(speed));
+  });
   return speeds;
+}
+
+double calc_jerk_integral(const RobotModel& robot, const TargetTable& targets,
+                          const TrackingResult& result, double period_s) {
+  std::vector<double> last(targets.joints), last_change(targets.joints);
+  double sum = 0;
+  for_each_speed(robot, targets, result, period_s, [&](std::size_t joint, double speed) {
+    const double change = speed - last[joint];
+    const double jerk = (change - last_change[joint]) / (period_s * period_s);
+    sum += jerk * jerk * period_s;
+    last[joint] = speed;
+    last_change[joint] = change;
+  });
+  return sum;
 }
 
 }  // namespace armwright

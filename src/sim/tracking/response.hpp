@@ -12,7 +12,10 @@
 //                               0 if that time is before t_m, and the segment's time after t_m if
 //                               a > band at its end
 // A joint's speed between two recorded positions is |dq| / h, with h the control period and dq
-// taken the short way round for revolute joints.
+// taken the short way round for revolute joints. With v_k its signed speed in period k, and v_0 = v_-1
+// = 0 before the start, the jerk integral of an arm is the sum over joints and periods of
+// h ((v_k - 2 v_(k-1) + v_(k-2)) / h^2)^2: the integral of the squared jerk of a motion that is smooth
+// over a few periods (rad^2/s^5; joints that slide, m^2/s^5, are added).
 //
 // The other half of this file measures the distance d_i between the tip and the moving target at the
 // ends of the control periods i, from recordings made with RecordingOptions::error_series. Every tip
@@ -94,5 +97,8 @@ MotionErrors measure_motion(const TrackingTask& task, const TargetTable& targets
 // Returns the largest speed of each joint (rad/s or m/s), from the start positions on.
 std::vector<double> calc_joint_speeds(const RobotModel& robot, const TargetTable& targets,
                                       const TrackingResult& result, double period_s);
+// Returns the jerk integral of the recorded motion.
+double calc_jerk_integral(const RobotModel& robot, const TargetTable& targets,
+                          const TrackingResult& result, double period_s);
 
 }  // namespace armwright

@@ -148,7 +148,8 @@ INSTANTIATE_TEST_SUITE_P(Workspace, BadSection, testing::ValuesIn(kWorkspace));
 const std::vector<Mistake> kObjective = {
     {"[objective]\nkind = 'errors'",
      "3: unknown objective.kind 'errors'; did you mean 'error'? Valid: error, "
-     "error_and_torque, error_vs_torque, torque_with_error_limit, error_with_torque_limit"},
+     "error_and_torque, torque_with_error_limit, error_with_torque_limit, front, "
+     "error_vs_torque"},
     {"[objective]\nkind = 'torque_with_error_limit'",
      "2: objective.error_limit_m is missing; it must be a finite number > 0 and <= 1000000000000"},
     {"[objective]\nkind = 'torque_with_error_limit'\nerror_limit_m = 0",
@@ -168,7 +169,8 @@ const std::vector<Mistake> kObjective = {
      "4: objective.total_torque_limit_n_m is 851; no design within the bounds has less than 852 N "
      "m; raise it or variables.bounds_factor"},
     {"[objective]\nkind = 'error_vs_torque'\nlogarithm = true",
-     "4: objective.logarithm is true; two objectives are compared as they are; leave it out"},
+     "4: objective.logarithm is true; the objectives of a front are compared as they are; "
+     "leave it out"},
     {"[objective]\ntorque_weight = -1",
      "3: objective.torque_weight is -1; it must be a finite number >= 0 and <= 1000000"},
     {"[objective]\nerror_scale_m = 0",

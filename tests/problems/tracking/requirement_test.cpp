@@ -79,10 +79,16 @@ TEST(RequirementReader, RefusesTimesThatAnUnsettledTipWouldKeep) {
               HasSubstr("0.7 s"));
 }
 
-TEST(RequirementReader, RefusesConstraintsBesideTwoObjectives) {
-  EXPECT_THAT(refuse_requirement("quantity = 'energy'\nlimit_j = 9\nuse = 'constraint'\n"
-                                 "[objective]\nkind = 'error_vs_torque'"),
-              HasSubstr("two objectives"));
+TEST(Requirements, AreConstraintsOfFrontsToo) {
+  std::vector<std::string> overrides = kQuick;
+  overrides.emplace_back("objective.kind=error_vs_torque");
+  const auto problem =
+      load_requiring("{quantity='energy', limit_j=20000, use='constraint'}", overrides);
+  const Evaluation evaluation = problem->evaluate(list_starts(problem->description().variables),
+                                                  {CaseRole::training, "train/1", {0, 1}});
+  EXPECT_THAT(evaluation.objectives, SizeIs(2));
+  ASSERT_THAT(evaluation.constraint_values, SizeIs(1));
+  EXPECT_EQ(evaluation.constraint_values[0], evaluation.metrics.back() / 20000 - 1);
 }
 
 TEST(Requirements, AreMetricsAndWhereTheyAreConstraintsLimits) {

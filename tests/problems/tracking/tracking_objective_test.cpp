@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/expect_error.hpp"
 #include "problems/load_tracking.hpp"
@@ -15,8 +16,13 @@ namespace {
 
 using Kind = TrackingObjective::Kind;
 using Statistic = TrackingObjective::Statistic;
+using Q = TrackingQuantity;
 using testing::ElementsAre;
 using testing::SizeIs;
+
+WeightedQuantity make_term(Q quantity, double weight, double scale) {
+  return {static_cast<std::size_t>(quantity), weight, scale};
+}
 
 const std::vector<double> kErrors_m = {0.5, 0.125, 2, 0.25};
 
@@ -106,9 +112,13 @@ TEST(Resolution, IsAMicrometreOfErrorInTheUnitOfTheObjective) {
   EXPECT_EQ(calc_resolution(objective), 1e-6);
   objective.energy_weight = 1;
   EXPECT_DOUBLE_EQ(calc_resolution(objective), 2.5e-4);
-  for (const Kind kind : {Kind::error_and_torque, Kind::error_vs_torque}) {
-    EXPECT_DOUBLE_EQ(calc_resolution({.kind = kind, .error_scale_m = 0.004}), 2.5e-4);
-  }
+  EXPECT_DOUBLE_EQ(calc_resolution({.kind = Kind::error_and_torque, .error_scale_m = 0.004}),
+                   2.5e-4);
+  TrackingObjective front;
+  front.set_front({make_term(Q::error, 1, 0.004), make_term(Q::energy, 1, 1)});
+  EXPECT_DOUBLE_EQ(calc_resolution(front), 2.5e-4);
+  front.set_front({make_term(Q::torque, 1, 1), make_term(Q::energy, 1, 1)});
+  EXPECT_EQ(calc_resolution(front), 0);
   EXPECT_EQ(calc_resolution({.kind = Kind::error_with_torque_limit}), 1e-6);
   objective.kind = Kind::torque_with_error_limit;
   EXPECT_DOUBLE_EQ(calc_resolution(objective), 2);
@@ -234,6 +244,123 @@ TEST(ObjectiveTable, RefusesWhatCannotBeMeant) {
                                         "energy_scale_j = 1"),
             "p.toml:4: objective.energy_weight is 1; only the kinds error and error_and_torque are "
             "sums; choose one of them or leave it out");
+}
+
+TEST(Front, HasEachQuantityAsAnObjectiveInTheOrderOfTheFile) {
+  TrackingObjective objective;
+  objective.set_front({make_term(Q::energy, 2, 100), make_term(Q::error, 4, 0.5),
+                       make_term(Q::requirement, 1, 1), make_term(Q::peak_torque, 1, 1),
+                       make_term(Q::rms_torque, 1, 1), make_term(Q::moving_mass, 1, 1),
+                       make_term(Q::duration, 1, 1), make_term(Q::torque, 1, 1)});
+  ObjectiveTerms terms{.error_m = 1, .torque_n_m = 2, .energy_j = 3, .duration_s = 4};
+  terms.peak_torque_n_m = 5;
+  terms.rms_torque_n_m = 6;
+  terms.moving_mass_kg = 7;
+  terms.required = {8};
+  EXPECT_THAT(calc_objectives(objective, terms), ElementsAre(3, 1, 8, 5, 6, 7, 4, 2));
+  const std::vector<Quantity> required = {{"overshoot", "1"}};
+  const std::vector<Quantity> objectives = describe_objectives(objective, required);
+  EXPECT_EQ(objectives[0].name, "energy");
+  EXPECT_EQ(objectives[2].name, "overshoot");
+  EXPECT_FALSE(objective.has_residuals());  // an overshoot has none
+  EXPECT_EQ(objective.error_scale_m, 0.125);
+  EXPECT_THAT(calc_constraints(objective, terms), testing::IsEmpty());
+  objective.error_limit_m = 0.5;
+  objective.total_torque_limit_n_m = 4;
+  EXPECT_THAT(calc_constraints(objective, terms), ElementsAre(1, -0.5));
+}
+
+// Evaluates the start of q2-e6 on two cases, with further overrides.
+std::pair<std::shared_ptr<const TrackingProblem>, Evaluation> evaluate_start(
+    std::vector<std::string> overrides) {
+  overrides.insert(overrides.end(), {"physics.engine=articulated", "workspace.points=4"});
+  auto problem = load_tracking("q2-e6", overrides);
+  Evaluation evaluation = problem->evaluate(list_starts(problem->description().variables),
+                                            {CaseRole::training, "train/1", {0, 1}});
+  return {problem, std::move(evaluation)};
+}
+
+double get_metric(const TrackingProblem& problem, const Evaluation& evaluation,
+                  const std::string& name) {
+  const auto& metrics = problem.description().metrics;
+  const auto found = std::ranges::find(metrics, name, &Quantity::name);
+  return evaluation.metrics.at(static_cast<std::size_t>(found - metrics.begin()));
+}
+
+TEST(Front, OfErrorAndTorqueIsErrorVsTorqueBitByBit) {
+  const auto [old_kind, old_one] = evaluate_start({"objective.kind=error_vs_torque"});
+  const auto [front, one] = evaluate_start(
+      {"objective.kind=front", "objective.quantities=[\"error\", \"torque\"]"});
+  EXPECT_EQ(one.objectives, old_one.objectives);
+  EXPECT_EQ(one.metrics, old_one.metrics);
+  EXPECT_EQ(one.residuals, old_one.residuals);
+  EXPECT_THAT(one.residuals, testing::Not(testing::IsEmpty()));
+  EXPECT_EQ(front->description().objective_weights, old_kind->description().objective_weights);
+  EXPECT_EQ(front->penalty_objectives(), old_kind->penalty_objectives());
+}
+
+TEST(Front, HasTheMetricsAsObjectives) {
+  const auto [problem, one] = evaluate_start(
+      {"objective.kind=front", "variables.task=[\"speed\"]",
+       "objective.quantities=[\"error\", \"energy\", \"duration\", \"jerk\", \"peak_torque\"]",
+       "requirement=[{quantity=\"jerk\", limit_rad2_per_s5=1e5}]",
+       "objective.error_limit_m=0.5"});
+  ASSERT_THAT(one.objectives, SizeIs(5));
+  const auto metric = [&](const std::string& name) { return get_metric(*problem, one, name); };
+  EXPECT_EQ(one.objectives[0], metric("error"));
+  EXPECT_EQ(one.objectives[1], metric("energy"));
+  EXPECT_EQ(one.objectives[2], metric("duration"));
+  EXPECT_EQ(one.objectives[3], metric("requirement.jerk"));
+  EXPECT_GT(one.objectives[3], 0);
+  double peaks = 0;
+  for (const Joint& joint : problem->config().robot.joints) {
+    peaks += metric(joint.name + ".peak_effort");
+  }
+  EXPECT_EQ(one.objectives[4], peaks);
+  EXPECT_THAT(one.constraint_values, ElementsAre(one.objectives[0] / 0.5 - 1));
+  EXPECT_FALSE(problem->description().has_residuals);
+  EXPECT_EQ(problem->description().objective_weights[3], 1 / 1e5);
+  const std::vector<double> penalty = problem->penalty_objectives();
+  for (std::size_t i = 0; i < penalty.size(); ++i) {
+    EXPECT_GT(penalty[i], one.objectives[i]) << i;
+  }
+}
+
+// The residuals of a front are those of its weighted sum.
+TEST(Front, ItsResidualsSquaredAreItsWeightedSum) {
+  const auto [problem, one] = evaluate_start(
+      {"objective.kind=front", "objective.quantities=[\"energy\", \"error\", \"torque\"]",
+       "objective.weights=[3, 0.5, 2]", "objective.scales=[20000, 0.01, 1e6]"});
+  double sum = 0;
+  for (const double residual : one.residuals) {
+    sum += residual * residual;
+  }
+  ASSERT_GT(sum, 0);
+  EXPECT_NEAR(sum, calc_scalar(problem->description(), one.objectives), 1e-9 * sum);
+}
+
+TEST(Front, SaysWhatIsWrong) {
+  const ProblemFolder folder;
+  const auto refuse = [&](const std::string& lines) {
+    return folder.refusal_of_base_with("[objective]\nkind = 'front'\n" + lines);
+  };
+  EXPECT_EQ(refuse("quantities = ['error']"),
+            "p.toml:4: objective.quantities is ['error']; a front needs at least two quantities; "
+            "for one, choose another objective.kind");
+  EXPECT_THAT(refuse("quantities = ['error', 'enrgy']"),
+              testing::HasSubstr("unknown quantity 'enrgy'; did you mean 'energy'?"));
+  EXPECT_THAT(refuse("quantities = ['error', 'jerk']"),
+              testing::HasSubstr("'jerk' is measured for a [[requirement]] only; add one with "
+                                 "quantity = \"jerk\""));
+  EXPECT_THAT(refuse("quantities = ['error', 'duration']"),
+              testing::HasSubstr("'duration' is the same for all designs here; set "
+                                 "variables.task = [\"speed\"]"));
+  EXPECT_THAT(refuse("quantities = ['error', 'moving_mass']"),
+              testing::HasSubstr("'moving_mass' is the same for all designs here"));
+  EXPECT_THAT(refuse("quantities = ['error', 'error']"), testing::HasSubstr("stands there twice"));
+  EXPECT_THAT(refuse("quantities = ['error', 'energy']\nscales = [1]"),
+              testing::HasSubstr("it must hold 2 numbers, one per quantity"));
+  EXPECT_THAT(refuse(""), testing::HasSubstr("objective.quantities is missing"));
 }
 
 TEST(TrackingObjective, WhatAStatisticDoesNotReadIsRefused) {

@@ -220,5 +220,24 @@ TEST(JointSpeeds, AreTheLargestOfAnyStepTheShortWayRound) {
   EXPECT_THAT(calc_joint_speeds(robot, table, result, kSamplePeriod_s), ElementsAre(0, 0));
 }
 
+// A joint at constant jerk J from rest, q = J t^3 / 6: the third differences are J once three samples
+// lie after the start, and J / 6 and 5 J / 6 in the first two periods, where the arm still rested.
+TEST(JerkIntegral, OfAConstantJerkIsItsSquareTimesTheTime) {
+  RobotModel robot;
+  robot.joints.resize(1);
+  TargetTable table = make_table(1, 2);
+  table.start_positions = {0.25};
+  TrackingResult result;
+  constexpr double kJerk = 3;
+  constexpr int kSteps = 50;
+  for (int k = 1; k <= kSteps; ++k) {
+    result.joint_positions.push_back(0.25 + kJerk * std::pow(k * kSamplePeriod_s, 3) / 6);
+  }
+  EXPECT_NEAR(calc_jerk_integral(robot, table, result, kSamplePeriod_s),
+              kJerk * kJerk * kSamplePeriod_s * (kSteps - 2 + (1.0 + 25.0) / 36), 1e-6);
+  result.joint_positions.assign(10, 0.25);
+  EXPECT_EQ(calc_jerk_integral(robot, table, result, kSamplePeriod_s), 0);
+}
+
 }  // namespace
 }  // namespace armwright

@@ -1,0 +1,15 @@
+// What a problem minimises, as the reader of its file finds it: a term of a weighted sum, or an
+// objective of a front, whose weighted sum optimizers for one objective minimise.
+#pragma once
+
+#include <cstddef>
+
+namespace armwright {
+
+struct WeightedQuantity {
+  std::size_t quantity = 0;  // its place among the quantities of the problem's kind
+  double weight = 1;         // >= 0
+  double scale = 1;          // > 0; the value that counts 1
+};
+
+}  // namespace armwright
