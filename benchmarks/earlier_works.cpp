@@ -182,6 +182,8 @@ void check_line() {
     print(group, fmt::format("least time, {} intervals", intervals), "s", oracle,
           find_time(9.80665, static_cast<std::size_t>(intervals), {10, 12, 4}), 5e-5);
   }
+  print(group, "least time of the problem chaiyaratana-line", "s", 0.4143,
+        evaluate(load_problem("chaiyaratana-line"), {1, 1, 1}).objectives.at(0), 5e-5);
   print(group, "least time without gravity, 200 intervals", "s", 0.36652,
         find_time(0, 200, {10, 12, 4}), 5e-6);
   const double plain = find_time(0, 200, {10, 20, 10});

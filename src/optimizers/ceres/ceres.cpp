@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "optimizers/ceres/ceres_backend.hpp"
+#include "optimizers/interface/differences.hpp"
 
 namespace armwright {
 namespace {
@@ -14,13 +15,6 @@ constexpr const char* kUnavailable =
     "built without Ceres Solver (CMake option ARMWRIGHT_WITH_CERES is OFF)";
 #endif
 
-OptionSpec make_differences_option(const char* kind) {
-  return {.name = "differences",
-          .description = "of the derivatives: forward (a point for each variable) or central (two)",
-          .fallback = std::string(kind),
-          .choices = {"forward", "central"}};
-}
-
 std::vector<OptionSpec> make_tolerance_options() {
   return {{.name = "function_tolerance",
            .description = "converged when a step changes the cost by less than this share of it",
@@ -32,11 +26,6 @@ std::vector<OptionSpec> make_tolerance_options() {
            .fallback = 1e-8,
            .lower = 0,
            .upper = 1}};
-}
-
-[[maybe_unused]] DifferenceSettings read_differences(const Options& options) {
-  return {.central = options.get_text("differences") == "central",
-          .step = options.get_number("step")};
 }
 
 std::unique_ptr<Optimizer> make_lm([[maybe_unused]] const Options& options) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string>
 
 namespace armwright {
 namespace {
@@ -36,6 +37,18 @@ Shift add_shifts(const SearchSpace& space, const DifferenceSettings& settings,
 }
 
 }  // namespace
+
+OptionSpec make_differences_option(const char* fallback) {
+  return {.name = "differences",
+          .description = "of the derivatives: forward (a point for each variable) or central (two)",
+          .fallback = std::string(fallback),
+          .choices = {"forward", "central"}};
+}
+
+DifferenceSettings read_differences(const Options& options) {
+  return {.central = options.get_text("differences") == "central",
+          .step = options.get_number("step")};
+}
 
 std::vector<Score> DifferencedFunction::evaluate(const std::vector<std::vector<double>>& batch) {
   std::vector<Score> scores = function_.evaluate_batch(batch);

@@ -31,6 +31,10 @@ struct DifferenceSettings {
   bool central = false;
   double step = 0.005;  // share of the box, at most 0.5
 };
+// Returns the option `differences`: "forward" or "central".
+OptionSpec make_differences_option(const char* fallback);
+// Reads that option and the option `step`.
+DifferenceSettings read_differences(const Options& options);
 
 // Returns the derivative of each value with respect to the residual with the same index, the only
 // residual that it depends on. Empty if the evaluation failed. Exact derivatives need this

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "optimizers/interface/differences.hpp"
 #include "optimizers/interface/isolation.hpp"
 #include "optimizers/interface/scalar_function.hpp"
 #include "optimizers/nlopt/nlopt_algorithms.hpp"
@@ -38,6 +39,9 @@ class Nlopt : public Optimizer {
                  .restarts = integer("restarts"),
                  .tolerances_are_local = algorithm.kind == NloptKind::starting,
                  .constraint_weight = number("constraint_weight")};
+    if (algorithm.takes_gradients) {
+      settings_.differences = read_differences(options);
+    }
     if (values.contains("local")) {
       const NloptAlgorithm& local = find_nlopt_algorithm(options.get_text("local"));
       settings_.local = local.nlopt_name;
@@ -80,9 +84,9 @@ class Nlopt : public Optimizer {
 };
 
 std::vector<OptionSpec> make_options(const NloptAlgorithm& algorithm) {
-  const bool takes_steps = algorithm.kind == NloptKind::local ||
-                           algorithm.kind == NloptKind::starting ||
-                           algorithm.kind == NloptKind::wrapping;
+  const bool takes_steps =
+      (algorithm.kind == NloptKind::local && !algorithm.takes_gradients) ||
+      algorithm.kind == NloptKind::starting || algorithm.kind == NloptKind::wrapping;
   const bool descends = algorithm.kind == NloptKind::local || algorithm.kind == NloptKind::wrapping;
   std::vector<OptionSpec> options;
   if (algorithm.kind == NloptKind::starting) {
@@ -108,6 +112,15 @@ std::vector<OptionSpec> make_options(const NloptAlgorithm& algorithm) {
                               "least 2 variables; praxis uses random numbers",
          .fallback = choices.front(),
          .choices = choices});
+  }
+  if (algorithm.takes_gradients) {
+    options.push_back(make_differences_option("central"));
+    options.push_back({.name = "step",
+                       .description = "of the differences, share of the box; simulated objectives "
+                                      "are rough and need 0.001 or more",
+                       .fallback = 1e-6,
+                       .lower = 1e-12,
+                       .upper = 0.25});
   }
   if (takes_steps) {
     options.push_back(
@@ -144,9 +157,12 @@ std::vector<OptionSpec> make_options(const NloptAlgorithm& algorithm) {
   }
   if (descends) {
     options.push_back({.name = "restarts",
-                       .description =
-                           "largest number of restarts at the best point seen, each with half "
-                           "the step; a restart without an improvement is the last",
+                       .description = algorithm.takes_gradients
+                                          ? "largest number of restarts at the best point seen; a "
+                                            "restart without an improvement is the last"
+                                          : "largest number of restarts at the best point seen, "
+                                            "each with half the step; a restart without an "
+                                            "improvement is the last",
                        .fallback = algorithm.restarts,
                        .lower = 0,
                        .upper = 1000});
@@ -184,6 +200,7 @@ OptimizerRow make_row(const NloptAlgorithm& algorithm) {
       .source = algorithm.source,
       .capabilities = {.bounds = !algorithm.leaves_box,
                        .constraints = algorithm.takes_constraints,
+                       .batch = algorithm.takes_gradients,
                        .stochastic = algorithm.is_stochastic,
                        .local = descends},
       .options = specs,

@@ -20,7 +20,30 @@ bool is_finite(std::span<const double> values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
+// Writes the derivatives of a value into the gradient; zeros if they are not known.
+void write_gradient(const std::vector<std::vector<double>>& derivatives, std::size_t value,
+                    std::span<double> gradient) {
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    gradient[i] = derivatives.empty() ? 0 : derivatives[i][value];
+  }
+}
+
 }  // namespace
+
+NloptAdapter::NloptAdapter(const NloptSettings& settings, Evaluator& evaluator)
+    : settings_(settings), function_(evaluator) {
+  if (settings.differences) {
+    const auto values_of = [this](const Score& score) {
+      std::vector<double> values = list_values(score);
+      if (score.status == EvaluationStatus::ok) {
+        return values;
+      }
+      failed_values_ = std::move(values);
+      return std::vector<double>{};
+    };
+    differenced_.emplace(evaluator, values_of, *settings.differences);
+  }
+}
 
 void NloptAdapter::begin(std::function<void()> stop_solver) {
   stop_solver_ = std::move(stop_solver);
@@ -34,26 +57,37 @@ void NloptAdapter::rethrow() const {
   }
 }
 
-double NloptAdapter::ask_objective(std::span<const double> coordinates) {
+double NloptAdapter::ask_objective(std::span<const double> coordinates,
+                                   std::span<double> gradient) {
   ++calls_;
   Answer* answer = find(coordinates);
-  if (answer == nullptr || answer->is_objective_used) {
-    answer = evaluate(coordinates);
+  // A differenced function has no place evaluated twice.
+  if (answer == nullptr || (answer->is_objective_used && !differenced_) ||
+      (!gradient.empty() && answer->derivatives.empty())) {
+    answer = evaluate(coordinates, !gradient.empty());
   }
   if (answer == nullptr) {
+    write_gradient({}, 0, gradient);
     return worst_objective_;
   }
   answer->is_objective_used = true;
+  write_gradient(answer->derivatives, 0, gradient);
   return answer->objective;
 }
 
-double NloptAdapter::ask_constraint(std::span<const double> coordinates, std::size_t index) {
+double NloptAdapter::ask_constraint(std::span<const double> coordinates, std::size_t index,
+                                    std::span<double> gradient) {
   ++calls_;
   const Answer* answer = find(coordinates);
-  if (answer == nullptr) {
-    answer = evaluate(coordinates);
+  if (answer == nullptr || (!gradient.empty() && answer->derivatives.empty())) {
+    answer = evaluate(coordinates, !gradient.empty());
   }
-  return answer == nullptr ? kFailedConstraint : answer->constraint_values[index];
+  if (answer == nullptr) {
+    write_gradient({}, 0, gradient);
+    return kFailedConstraint;
+  }
+  write_gradient(answer->derivatives, index + 1, gradient);
+  return answer->constraint_values[index];
 }
 
 NloptAdapter::Answer* NloptAdapter::find(std::span<const double> coordinates) {
@@ -62,7 +96,8 @@ NloptAdapter::Answer* NloptAdapter::find(std::span<const double> coordinates) {
   return found == answers_.end() ? nullptr : &*found;
 }
 
-NloptAdapter::Answer* NloptAdapter::evaluate(std::span<const double> coordinates) {
+NloptAdapter::Answer* NloptAdapter::evaluate(std::span<const double> coordinates,
+                                             bool with_derivatives) {
   if (has_ended()) {
     stop_solver();
     return nullptr;
@@ -76,7 +111,9 @@ NloptAdapter::Answer* NloptAdapter::evaluate(std::span<const double> coordinates
   }
   nan_sequence_ = 0;
   try {
-    return &remember(coordinates, function_.evaluate_point(point));
+    return differenced_ ? &evaluate_place({coordinates.begin(), coordinates.end()},
+                                          with_derivatives)
+                        : &remember(coordinates, list_values(function_.evaluate_point(point)));
   } catch (const EvaluatorStopped&) {
     has_stopped_ = true;
   } catch (...) {
@@ -95,21 +132,35 @@ void NloptAdapter::stop_solver() {
   }
 }
 
-NloptAdapter::Answer& NloptAdapter::remember(std::span<const double> coordinates,
-                                             const Score& score) {
+NloptAdapter::Answer& NloptAdapter::evaluate_place(const std::vector<double>& coordinates,
+                                                   bool with_derivatives) {
+  const auto& place = differenced_->evaluate_place(coordinates, with_derivatives);
+  Answer& answer = remember(coordinates, place.values.empty() ? failed_values_ : place.values);
+  answer.derivatives = place.derivatives;
+  return answer;
+}
+
+std::vector<double> NloptAdapter::list_values(const Score& score) const {
   const ProblemDescription& problem = function_.evaluator().problem();
+  if (!settings_.takes_constraints) {
+    return {calc_merit(problem, score, settings_.constraint_weight)};
+  }
+  std::vector<double> values = {calc_scalar(problem, score.objectives)};
+  values.insert(values.end(), score.constraint_values.begin(), score.constraint_values.end());
+  values.resize(1 + problem.constraints.size(), kFailedConstraint);
+  return values;
+}
+
+NloptAdapter::Answer& NloptAdapter::remember(std::span<const double> coordinates,
+                                             std::span<const double> values) {
   Answer& answer = answers_[next_answer_];
   next_answer_ = (next_answer_ + 1) % answers_.size();
   answer.coordinates.assign(coordinates.begin(), coordinates.end());
   answer.is_objective_used = false;
-  if (settings_.takes_constraints) {
-    answer.objective = calc_scalar(problem, score.objectives);
-    answer.constraint_values = score.constraint_values;
-    answer.constraint_values.resize(problem.constraints.size(), kFailedConstraint);
-    answer.violation = calc_violation(answer.constraint_values);
-  } else {
-    answer.objective = calc_merit(problem, score, settings_.constraint_weight);
-  }
+  answer.derivatives.clear();
+  answer.objective = values.front();
+  answer.constraint_values.assign(values.begin() + 1, values.end());
+  answer.violation = calc_violation(answer.constraint_values);
   const bool is_first = !has_best();
   if (is_first || std::pair{answer.violation, answer.objective} < best_rank()) {
     best_ = answer;

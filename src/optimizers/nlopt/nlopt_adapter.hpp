@@ -4,17 +4,20 @@
 //
 // NLopt gets finite numbers only. A failed evaluation answers with its penalty and with strongly
 // violated constraints. A point with a coordinate that is not finite (some algorithms ask for NaN)
-// is not evaluated; it gets the worst objective so far.
+// is not evaluated; it gets the worst objective so far. Gradients are finite differences; those of a
+// failed point are 0.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "optimizers/interface/differences.hpp"
 #include "optimizers/interface/scalar_function.hpp"
 #include "optimizers/nlopt/nlopt_backend.hpp"
 
@@ -22,8 +25,7 @@ namespace armwright {
 
 class NloptAdapter {
  public:
-  NloptAdapter(const NloptSettings& settings, Evaluator& evaluator)
-      : settings_(settings), function_(evaluator) {}
+  NloptAdapter(const NloptSettings& settings, Evaluator& evaluator);
 
   const SearchSpace& space() const { return function_.space(); }
   // Begins a search. Calls `stop_solver` when the evaluator has stopped or thrown.
@@ -38,8 +40,10 @@ class NloptAdapter {
 
   // Answer NLopt. Every call for the objective is one evaluation, as with NLopt alone, unless a
   // constraint at the same point was asked for before.
-  double ask_objective(std::span<const double> coordinates);
-  double ask_constraint(std::span<const double> coordinates, std::size_t index);
+  // Fill the gradient unless it is empty; it has one number per coordinate.
+  double ask_objective(std::span<const double> coordinates, std::span<double> gradient = {});
+  double ask_constraint(std::span<const double> coordinates, std::size_t index,
+                        std::span<double> gradient = {});
 
  private:
   struct Answer {
@@ -48,16 +52,23 @@ class NloptAdapter {
     std::vector<double> constraint_values = {};
     double violation = 0;
     bool is_objective_used = false;
+    // Per coordinate, those of the objective and of each constraint. Empty if they are not known.
+    std::vector<std::vector<double>> derivatives = {};
   };
 
   Answer* find(std::span<const double> coordinates);
   // Returns null for a point with a coordinate that is not finite, and after the end of the search.
-  Answer* evaluate(std::span<const double> coordinates);
-  Answer& remember(std::span<const double> coordinates, const Score& score);
+  Answer* evaluate(std::span<const double> coordinates, bool with_derivatives);
+  Answer& evaluate_place(const std::vector<double>& coordinates, bool with_derivatives);
+  // Returns the objective that NLopt gets, and then the constraints.
+  std::vector<double> list_values(const Score& score) const;
+  Answer& remember(std::span<const double> coordinates, std::span<const double> values);
   void stop_solver();
 
   const NloptSettings& settings_;
   ScalarFunction function_;
+  std::optional<DifferencedFunction> differenced_;  // if NLopt gets gradients
+  std::vector<double> failed_values_;               // of the latest failed evaluation
   std::function<void()> stop_solver_;
   std::array<Answer, 8> answers_;  // the latest
   std::size_t next_answer_ = 0;

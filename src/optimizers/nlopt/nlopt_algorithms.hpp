@@ -1,4 +1,4 @@
-// The gradient-free algorithms of NLopt and their known properties. This header needs no NLopt: the
+// The algorithms of NLopt that work without exact gradients, and their known properties. This header needs no NLopt: the
 // table is the same in builds with and without it.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace armwright {
 
-// Returns one row per gradient-free algorithm of NLopt. In a build without NLopt they say so and
+// Returns one row per algorithm. In a build without NLopt they say so and
 // cannot be used.
 std::vector<OptimizerRow> make_nlopt_rows();
 
@@ -32,6 +32,7 @@ struct NloptAlgorithm {
   std::string summary;
   std::string source;
   bool takes_constraints = false;
+  bool takes_gradients = false;  // it gets them by differences of evaluations
   bool is_stochastic = false;
   bool leaves_box = false;
   // It can loop forever without asking for a point. Only the end of its process stops it then.

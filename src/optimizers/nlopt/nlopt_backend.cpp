@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <type_traits>
 
 #include "optimizers/interface/scalar_function.hpp"
@@ -31,13 +32,18 @@ struct ConstraintQuestion {
   std::size_t index = 0;
 };
 
-double call_objective(unsigned n, const double* x, double* /*gradient*/, void* data) {
-  return static_cast<NloptAdapter*>(data)->ask_objective({x, n});
+// NLopt asks for no gradient with a null pointer.
+std::span<double> get_gradient(double* gradient, unsigned n) {
+  return {gradient, gradient == nullptr ? 0 : n};
 }
 
-double call_constraint(unsigned n, const double* x, double* /*gradient*/, void* data) {
+double call_objective(unsigned n, const double* x, double* gradient, void* data) {
+  return static_cast<NloptAdapter*>(data)->ask_objective({x, n}, get_gradient(gradient, n));
+}
+
+double call_constraint(unsigned n, const double* x, double* gradient, void* data) {
   const auto& question = *static_cast<ConstraintQuestion*>(data);
-  return question.questions->ask_constraint({x, n}, question.index);
+  return question.questions->ask_constraint({x, n}, question.index, get_gradient(gradient, n));
 }
 
 class Search {

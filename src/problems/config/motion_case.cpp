@@ -18,8 +18,10 @@ constexpr double kPeriodTolerance = 1e-9;
 
 MotionCurve make_curve(const MotionSamples& motion) {
   if (motion.rates.size() > 0 && motion.accelerations.size() > 0) {
+    const Eigen::MatrixXd accelerations = motion.accelerations.transpose();
+    const Eigen::Index pieces = accelerations.cols() - 1;
     return {motion.times_s, motion.positions.transpose(), motion.rates.transpose(),
-            motion.accelerations.transpose()};
+            accelerations.leftCols(pieces), accelerations.rightCols(pieces)};
   }
   std::vector<double> intervals_s;
   for (std::size_t k = 1; k < motion.times_s.size(); ++k) {

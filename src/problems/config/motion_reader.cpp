@@ -24,8 +24,8 @@ constexpr Range kSize_m{.lower = 0, .upper = kFarthestPlace_m, .lower_open = tru
 
 const Setting<std::string> kCurve{
     "curve", curve_kind_names, "cubic",
-    "for the kind motion: cubic or quintic splines through the points, or rest: the arm rests at "
-    "each point"};
+    "for the kind motion: cubic or quintic splines through the points; rest: the arm rests at each "
+    "point; line: so it does, and the tip moves straight between them in the least time"};
 const Setting<std::string> kEnds{
     "ends", spline_ends_names, "rest",
     "of cubic splines: rest (no speed and no acceleration at the ends, with two virtual knots) or "
@@ -71,6 +71,10 @@ const Setting<std::vector<double>> kJerkLimits{
 const Setting<std::vector<double>> kEffortLimits{"effort_limits", kLimitRange,
                                                  std::vector<double>{},
                                                  "largest efforts, N m or N, in the same way"};
+const Setting<std::vector<double>> kEffortShareBounds{
+    "effort_share_bounds", Range{.lower = 1e-3, .upper = 1}, kNoDefault,
+    "for the curve line: least and largest share of its effort limit that a joint may use, which is "
+    "a variable (default: 0.1 and 1)"};
 const Setting<double> kToolSpeedLimit{"tool_speed_limit_m_per_s", kLimitRange, kNoDefault,
                                       "largest speed of the tip (default: none)"};
 const Setting<double> kLeastClearance{
@@ -88,12 +92,16 @@ const Setting<std::vector<double>> kPointTool{
 const Setting<std::vector<double>> kPointToolRpy{
     "tool_rpy_rad", kAngleRange, kNoDefault,
     "the tool's orientation there: roll, pitch and yaw (default: free)"};
+const Setting<std::string> kPointFile{
+    "file", kNoDefault,
+    "joint positions of one or more points: a motion.csv or JointTrajectory, looked for beside this "
+    "file; its times do not count"};
 const Setting<bool> kPointFree{"free", false,
                                "whether the joint positions of the point are variables"};
 const SettingTable kMotionPointSettings{
     .key = "point",
     .is_array = true,
-    .settings = {&kPointJoints, &kPointTool, &kPointToolRpy, &kPointFree}};
+    .settings = {&kPointJoints, &kPointTool, &kPointToolRpy, &kPointFile, &kPointFree}};
 
 const Setting<std::string> kObstacleName{"name", kNoDefault, "name of the obstacle in messages"};
 const Setting<std::string> kObstacleKind{"kind", obstacle_kind_names, kNoDefault,
@@ -147,6 +155,30 @@ std::optional<MotionBounds> read_bounds(const ConfigTable& table,
   return MotionBounds{(*values)[0], (*values)[1]};
 }
 
+constexpr std::size_t kMostPoints = 200;
+
+// Returns the key that gives the joint positions of a point.
+const std::string& get_joints_key(const ConfigTable& table) {
+  return table.has(kPointFile) ? kPointFile.key : kPointJoints.key;
+}
+
+std::vector<MotionPoint> read_point_file(const ConfigTable& table, const RobotModel& robot,
+                                         LoadedProblem& loaded) {
+  const std::filesystem::path file = find_beside(table, kPointFile);
+  const MotionSamples samples = read_motion_file(file, robot, false);
+  if (samples.times_s.size() > kMostPoints) {
+    table.refuse(kPointFile,
+                 fmt::format("it has {} points, and a motion has {} at most; leave out points",
+                             samples.times_s.size(), kMostPoints));
+  }
+  add_input(loaded, file);
+  std::vector<MotionPoint> points;
+  for (Eigen::Index k = 0; k < samples.positions.rows(); ++k) {
+    points.emplace_back().q = samples.positions.row(k).transpose();
+  }
+  return points;
+}
+
 MotionPoint read_point(const ConfigTable& table, const RobotModel& robot) {
   MotionPoint point;
   const bool is_free = table.get(kPointFree);
@@ -155,7 +187,7 @@ MotionPoint read_point(const ConfigTable& table, const RobotModel& robot) {
     table.refuse(joints                  ? kPointJoints.key
                  : table.has(kPointTool) ? kPointTool.key
                                          : "point",
-                 "a point has exactly one of joints, tool_m and free = true");
+                 "a point has exactly one of joints, tool_m, file and free = true");
   }
   if (table.has(kPointToolRpy) && !table.has(kPointTool)) {
     table.refuse(kPointToolRpy, "it needs tool_m beside it");
@@ -203,15 +235,50 @@ void check_points(const ConfigTable& its, const std::vector<ConfigTable>& tables
       const double value = (*q)[static_cast<Eigen::Index>(i)];
       if (config.limits_range && (value < joint.lower || value > joint.upper)) {
         tables[k].refuse(
-            kPointJoints,
+            get_joints_key(tables[k]),
             fmt::format("point {}: joint '{}' is at {:g}, its range is {:g} to {:g}; move the "
                         "point, or set motion.range_limits = false",
                         k + 1, sanitize(joint.name), value, joint.lower, joint.upper));
       }
     }
     if (k > 0 && config.points[k - 1].q && *config.points[k - 1].q == *q) {
-      tables[k].refuse(kPointJoints,
+      tables[k].refuse(get_joints_key(tables[k]),
                        fmt::format("point {} is the same as point {}; leave one out", k + 1, k));
+    }
+  }
+}
+
+// Refuses what a straight line of the tool cannot have.
+void check_line(const ConfigTable& its, const std::vector<ConfigTable>& tables,
+                const MotionConfig& config) {
+  for (std::size_t k = 0; k < config.points.size(); ++k) {
+    const auto& tool = config.points[k].tool;
+    if (!tool) {
+      tables[k].refuse(kMotionPointSettings.key,
+                       fmt::format("point {}: a line goes from one tool_m to the next; give the "
+                                   "point by tool_m",
+                                   k + 1));
+    }
+    const double way_m =
+        k == 0 ? 1 : (tool->position_m - config.points[k - 1].tool->position_m).norm();
+    if (way_m == 0) {
+      tables[k].refuse(kPointTool, fmt::format("point {} is the same as point {}; leave one out",
+                                               k + 1, k));
+    }
+  }
+  for (const auto* setting : {&kJerkLimits, &kIntervals}) {
+    if (its.has(*setting)) {
+      its.refuse(*setting,
+                 "the line is timed by its limits on efforts, speeds and accelerations, and its "
+                 "jerk has no bound; leave this out");
+    }
+  }
+  for (std::size_t i = 0; i < config.limits.effort.size(); ++i) {
+    if (!std::isfinite(config.limits.effort[i])) {
+      its.refuse(kEffortLimits,
+                 fmt::format("joint '{}' has no limit, and the line is timed by them; give "
+                             "motion.effort_limits",
+                             sanitize(config.robot.joints[i].name)));
     }
   }
 }
@@ -233,7 +300,7 @@ void check_holding(const std::vector<ConfigTable>& tables, const MotionConfig& c
     for (std::size_t i = 0; i < efforts.size(); ++i) {
       const Joint& joint = config.robot.joints[i];
       if (std::abs(efforts[i]) > config.limits.effort[i]) {
-        tables[k].refuse(kPointJoints,
+        tables[k].refuse(get_joints_key(tables[k]),
                          fmt::format("point {}: joint '{}' needs {:.4g} {} to hold the arm at rest "
                                      "there, its limit is {:.4g}; no motion can pass this point",
                                      k + 1, sanitize(joint.name), std::abs(efforts[i]),
@@ -253,7 +320,7 @@ void check_start(const std::vector<ConfigTable>& tables, const MotionConfig& con
         calc_link_poses(config.robot, {q.data(), static_cast<std::size_t>(q.size())}));
     if (nearest.distance_m < config.least_clearance_m.value_or(0)) {
       tables[k].refuse(
-          kPointJoints,
+          get_joints_key(tables[k]),
           fmt::format(
               "point {}: {} are {:.4g} m apart (negative: one inside the other), and {:g} m "
               "are asked for; move the point or the obstacle",
@@ -306,6 +373,9 @@ void read_motion_objective(const ConfigTable& table, MotionConfig& config) {
                    "there is nothing to be clear of; add an [[obstacle]], or set "
                    "motion.self_clearance = true");
     }
+    if (quantity == MotionQuantity::jerk && config.form.kind == CurveKind::line) {
+      table.refuse(kObjectiveQuantities, "the jerk of a line has no bound; leave it out");
+    }
     if (quantity == MotionQuantity::deflection && config.tubes.tubes.empty()) {
       table.refuse(kObjectiveQuantities, "only arms of [tubes] have a deflection");
     }
@@ -318,8 +388,8 @@ const SettingTable kMotionSettings{
     .key = "motion",
     .settings = {&kCurve, &kEnds, &kProfile, &kIntervals, &kShortestInterval, &kLongestInterval,
                  &kMotionSamples, &kMotionHome, &kRangeLimit, &kRobotLimits, &kSpeedLimits,
-                 &kAccelerationLimits, &kJerkLimits, &kEffortLimits, &kToolSpeedLimit,
-                 &kLeastClearance, &kSelfClearance, &kPayloadMass, &kPayloadCom},
+                 &kAccelerationLimits, &kJerkLimits, &kEffortLimits, &kEffortShareBounds,
+                 &kToolSpeedLimit, &kLeastClearance, &kSelfClearance, &kPayloadMass, &kPayloadCom},
     .tables = {&kMotionPointSettings}};
 const SettingTable kObstacleSettings{
     .key = "obstacle",
@@ -397,11 +467,21 @@ void load_motion(const ConfigTable& table, LoadedProblem& loaded) {
                    read_limits(kJerkLimits, unlimited), read_limits(kEffortLimits, efforts)};
   config.tool_speed_limit_m_per_s = its.find(kToolSpeedLimit);
   config.least_clearance_m = its.find(kLeastClearance);
-  const std::vector<ConfigTable> points = its.get_tables_or_empty(kMotionPointSettings);
-  for (const ConfigTable& point : points) {
-    config.points.push_back(read_point(point, config.robot));
+  if (config.form.kind == CurveKind::line) {
+    config.effort_share = read_bounds(its, kEffortShareBounds).value_or(config.effort_share);
+  }
+  std::vector<ConfigTable> points;  // that of each point
+  for (const ConfigTable& table_of : its.get_tables_or_empty(kMotionPointSettings)) {
+    const std::vector<MotionPoint> read =
+        table_of.has(kPointFile) ? read_point_file(table_of, config.robot, loaded)
+                                 : std::vector{read_point(table_of, config.robot)};
+    config.points.insert(config.points.end(), read.begin(), read.end());
+    points.insert(points.end(), read.size(), table_of);
   }
   check_points(its, points, config);
+  if (config.form.kind == CurveKind::line) {
+    check_line(its, points, config);
+  }
   config.intervals_s = its.get(kIntervals);
   const std::size_t intervals = config.form.count_intervals(config.points.size());
   if (!config.intervals_s.empty() && config.intervals_s.size() != intervals) {

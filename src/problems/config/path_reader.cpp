@@ -150,14 +150,7 @@ std::optional<TestCase> read_path(const ConfigTable& table, const TrackingTask& 
   } else if (kind == "circle") {
     path = make_circle(table, task);
   } else {
-    const std::filesystem::path named = table.get(kPathFile);
-    const std::filesystem::path beside = table.file().parent_path() / named;
-    std::error_code ignored;
-    const auto file = std::filesystem::is_regular_file(beside, ignored) ? beside : named;
-    if (!std::filesystem::is_regular_file(file, ignored)) {
-      table.refuse(kPathFile, fmt::format("there is no such file, in {} or in the current folder",
-                                          sanitize(table.file().parent_path().string())));
-    }
+    const std::filesystem::path file = find_beside(table, kPathFile);
     path = parse_path(read_file(file, kPathLimit_bytes), sanitize(file.string()), task);
     add_input(loaded, file);
   }

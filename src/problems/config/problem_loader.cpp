@@ -297,6 +297,18 @@ void add_input(LoadedProblem& loaded, const std::filesystem::path& file) {
       calc_sha256_hex(read_file(file, kInputLimit_bytes));
 }
 
+std::filesystem::path find_beside(const ConfigTable& table, const Setting<std::string>& setting) {
+  const std::filesystem::path named = table.get(setting);
+  const std::filesystem::path beside = table.file().parent_path() / named;
+  std::error_code ignored;
+  const auto file = std::filesystem::is_regular_file(beside, ignored) ? beside : named;
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    table.refuse(setting, fmt::format("there is no such file, in {} or in the current folder",
+                                      sanitize(table.file().parent_path().string())));
+  }
+  return file;
+}
+
 std::filesystem::path resolve_named(const ConfigTable& table, const Setting<std::string>& setting,
                                     std::string_view kind) {
   const std::string name = table.get(setting);

@@ -42,6 +42,10 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
 std::filesystem::path resolve_named(const ConfigTable& table, const Setting<std::string>& setting,
                                     std::string_view kind);
 
+// Returns the path of the file that a setting names: beside the configuration, or in the current
+// folder. Refuses a name that is in neither.
+std::filesystem::path find_beside(const ConfigTable& table, const Setting<std::string>& setting);
+
 // Records the file's hash as an input of the problem. Throws Error{io} if it cannot be read,
 // Error{bad_data} if it is larger than 8 MiB.
 void add_input(LoadedProblem& loaded, const std::filesystem::path& file);

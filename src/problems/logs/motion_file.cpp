@@ -90,7 +90,8 @@ MotionSamples make_samples(const std::string& file, std::size_t joints, std::vec
   return motion;
 }
 
-MotionSamples parse_csv(std::string_view text, const std::string& file, const RobotModel& robot) {
+MotionSamples parse_csv(std::string_view text, const std::string& file, const RobotModel& robot,
+                        bool timed) {
   const std::size_t joints = robot.joint_count();
   std::vector<double> times_s, values[3];
   std::map<std::string, std::size_t, std::less<>> columns;
@@ -119,10 +120,11 @@ MotionSamples parse_csv(std::string_view text, const std::string& file, const Ro
           has_order[order] = has_order[order] && columns.contains(name_column(robot, joint, order));
         }
       }
-      if (!columns.contains("time_s") || !has_order[0]) {
+      if ((timed && !columns.contains("time_s")) || !has_order[0]) {
         refuse_at(file, line_number,
-                  fmt::format("a motion of this robot needs the columns time_s and {} to {}",
-                              name_column(robot, 0, 0), name_column(robot, joints - 1, 0)));
+                  fmt::format("a motion of this robot needs the columns {}{} to {}",
+                              timed ? "time_s and " : "", name_column(robot, 0, 0),
+                              name_column(robot, joints - 1, 0)));
       }
       continue;
     }
@@ -130,7 +132,10 @@ MotionSamples parse_csv(std::string_view text, const std::string& file, const Ro
       refuse_at(file, line_number,
                 fmt::format("it has {} fields, the first line has {}", fields.size(), count));
     }
-    const double time_s = parse_number(file, line_number, "time_s", fields[columns.at("time_s")]);
+    const auto time = columns.find("time_s");
+    const double time_s = time == columns.end()
+                              ? static_cast<double>(times_s.size())
+                              : parse_number(file, line_number, "time_s", fields[time->second]);
     check_time(file, line_number, times_s, time_s);
     times_s.push_back(time_s);
     for (int order = 0; order < 3; ++order) {
@@ -270,14 +275,15 @@ std::string write_joint_trajectory(const RobotModel& robot, const MotionSamples&
 }
 
 MotionSamples parse_motion(std::string_view text, const std::string& name,
-                           const RobotModel& robot) {
+                           const RobotModel& robot, bool timed) {
   const std::string file = sanitize(name);
   return name.ends_with(".yaml") || name.ends_with(".yml") ? parse_yaml(text, file, robot)
-                                                           : parse_csv(text, file, robot);
+                                                           : parse_csv(text, file, robot, timed);
 }
 
-MotionSamples read_motion_file(const std::filesystem::path& file, const RobotModel& robot) {
-  return parse_motion(read_file(file, kMotionLimit_bytes), file.string(), robot);
+MotionSamples read_motion_file(const std::filesystem::path& file, const RobotModel& robot,
+                               bool timed) {
+  return parse_motion(read_file(file, kMotionLimit_bytes), file.string(), robot, timed);
 }
 
 }  // namespace armwright

@@ -33,8 +33,11 @@ std::string write_joint_trajectory(const RobotModel& robot, const MotionSamples&
 // Reads one of the two; a name that ends in .yaml or .yml is YAML. Rates and accelerations that are
 // missing stay empty. Throws Error{io}, and Error{bad_data} with
 // file and line for joints that are not the robot's, times that do not rise, numbers that are not
-// finite, and fewer than two samples.
-MotionSamples read_motion_file(const std::filesystem::path& file, const RobotModel& robot);
-MotionSamples parse_motion(std::string_view text, const std::string& name, const RobotModel& robot);
+// finite, and fewer than two samples. Unless it is `timed`, a CSV may lack time_s; its samples are then
+// one second apart.
+MotionSamples read_motion_file(const std::filesystem::path& file, const RobotModel& robot,
+                               bool timed = true);
+MotionSamples parse_motion(std::string_view text, const std::string& name, const RobotModel& robot,
+                           bool timed = true);
 
 }  // namespace armwright

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/text.hpp"
 #include "problems/motion/motion_problem.hpp"
 #include "sim/dynamics/arm_equations.hpp"
 #include "sim/dynamics/joint_effort.hpp"
@@ -108,6 +109,86 @@ bool MotionProblem::find_points(const RobotModel& robot, std::span<const double>
   return true;
 }
 
+std::vector<std::vector<PathPlace>> MotionProblem::trace_lines(const RobotModel& robot,
+                                                               const Eigen::MatrixXd& points,
+                                                               std::string& reason) const {
+  std::vector<std::vector<PathPlace>> paths;
+  const auto places = static_cast<Index>(config_.samples);
+  for (std::size_t k = 0; k + 1 < config_.points.size(); ++k) {
+    const MotionPoint &from = config_.points[k], &to = config_.points[k + 1];
+    const bool has_turn = from.has_turn && to.has_turn;
+    ToolTask tool;
+    tool.orientation = has_turn ? ToolOrientation::pose : ToolOrientation::free;
+    const NumericKinematics kinematics(robot, tool, config_.home, config_.limits_range);
+    Eigen::MatrixXd positions(points.rows(), places);
+    positions.col(0) = points.col(static_cast<Index>(k));
+    const Eigen::Quaterniond first(from.tool->turn), last(to.tool->turn);
+    for (Index i = 1; i < places; ++i) {
+      const double s = static_cast<double>(i) / static_cast<double>(places - 1);
+      const ToolPose target{.position_m = (1 - s) * from.tool->position_m + s * to.tool->position_m,
+                            .turn = first.slerp(s, last).toRotationMatrix()};
+      NumericKinematics::Approach search = kinematics.make_search(
+          target, std::span<const double>(positions.col(i - 1).data(), robot.joint_count()));
+      NumericKinematics::Approach* const searches[] = {&search};
+      kinematics.approach(searches);
+      if (!search.reached) {
+        reason = fmt::format(
+            "between points {} and {}: the arm cannot follow the straight line, it fails at "
+            "({:.4g}, {:.4g}, {:.4g}) m; choose points without a singular posture or the end of a "
+            "range between them",
+            k + 1, k + 2, target.position_m.x(), target.position_m.y(), target.position_m.z());
+        return {};
+      }
+      positions.col(i) = search.q;
+    }
+    paths.push_back(sample_path(positions));
+  }
+  return paths;
+}
+
+std::vector<LeastTime> MotionProblem::time_lines(const RobotModel& robot,
+                                                 std::span<const std::vector<PathPlace>> paths,
+                                                 const JointLimits& limits,
+                                                 std::string& reason) const {
+  std::vector<LeastTime> times;
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    times.push_back(calc_least_time(robot, config_.gravity_m_per_s2, paths[k], limits));
+    if (const auto place = times.back().stuck_place) {
+      reason = fmt::format("between points {} and {}: no speed suits the line at {:.3g} % of it; "
+                           "joint '{}' cannot hold the arm there within {:.4g} {}",
+                           k + 1, k + 2,
+                           100 * static_cast<double>(*place) /
+                               static_cast<double>(paths[k].size() - 1),
+                           robot.joints[times.back().stuck_joint].name,
+                           limits.effort[times.back().stuck_joint],
+                           get_effort_unit(robot.joints[times.back().stuck_joint].kind));
+      return {};
+    }
+  }
+  return times;
+}
+
+std::optional<MotionCurve> MotionProblem::make_curve(const RobotModel& robot,
+                                                     const Eigen::MatrixXd& points,
+                                                     std::span<const double> x,
+                                                     std::string& reason) const {
+  if (!is_line()) {
+    return MotionCurve(
+        config_.form, points,
+        config_.intervals_s.empty() ? x.first(count_intervals()) : std::span(config_.intervals_s));
+  }
+  const auto paths = changes_arm() ? trace_lines(robot, points, reason) : lines_;
+  JointLimits limits = config_.limits;
+  for (std::size_t joint = 0; joint < limits.effort.size(); ++joint) {
+    limits.effort[joint] *= x[joint];
+  }
+  const std::vector<LeastTime> times = time_lines(robot, paths, limits, reason);
+  if (times.empty()) {
+    return std::nullopt;
+  }
+  return make_fastest_motion(paths, times);
+}
+
 std::optional<AssessedPlan> MotionProblem::assess(std::span<const double> x, std::size_t samples,
                                                   std::string& reason) const {
   std::vector<Tube> tubes;
@@ -116,10 +197,11 @@ std::optional<AssessedPlan> MotionProblem::assess(std::span<const double> x, std
   if (!find_points(*robot, x, points, reason)) {
     return std::nullopt;
   }
-  const std::size_t intervals = count_intervals();
-  const std::span<const double> times =
-      config_.intervals_s.empty() ? x.first(intervals) : std::span(config_.intervals_s);
-  AssessedPlan plan{.curve = MotionCurve(config_.form, points, times),
+  std::optional<MotionCurve> curve = make_curve(*robot, points, x, reason);
+  if (!curve) {
+    return std::nullopt;
+  }
+  AssessedPlan plan{.curve = *std::move(curve),
                     .robot = std::move(robot),
                     .times_s = {},
                     .efforts = {},
@@ -213,6 +295,9 @@ void MotionProblem::make_constraints(AssessedPlan& plan) const {
       const double half = (joint.upper - joint.lower) / 2;
       plan.constraints.push_back(std::max(peak.upper - middle, middle - peak.lower) / half - 1);
     }
+    if (is_line()) {
+      continue;
+    }
     int order = 1;
     for (const std::vector<double>* limit : {&limits.speed, &limits.acceleration, &limits.jerk}) {
       if (std::isfinite((*limit)[i])) {
@@ -240,10 +325,16 @@ void MotionProblem::make_constraints(AssessedPlan& plan) const {
 }
 
 std::optional<double> MotionProblem::calc_bound(const AssessedPlan& plan) const {
-  // A motion that rests at its points is one path per interval.
+  // A motion that rests at its points is one path per interval, or per line.
   std::vector<double> rests = {0, plan.curve.duration_s()};
   if (config_.form.kind == CurveKind::rest) {
     rests = plan.curve.knots_s();
+  } else if (is_line()) {
+    const std::vector<double>& knots_s = plan.curve.knots_s();
+    rests.clear();
+    for (std::size_t i = 0; i < knots_s.size(); i += config_.samples - 1) {
+      rests.push_back(knots_s[i]);
+    }
   }
   double sum_s = 0;
   for (std::size_t i = 0; i + 1 < rests.size(); ++i) {

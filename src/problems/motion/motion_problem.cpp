@@ -89,12 +89,9 @@ MotionProblem::MotionProblem(MotionConfig config)
     description_.objectives = {{join(names, " and "), "1"}};
   }
   for (std::size_t i = 0; i < kMotionQuantities; ++i) {
-    const auto quantity = static_cast<MotionQuantity>(i);
-    if ((quantity == MotionQuantity::clearance && !config_.clearance) ||
-        (quantity == MotionQuantity::deflection && !changes_arm())) {
-      continue;
+    if (has_metric(static_cast<MotionQuantity>(i))) {
+      description_.metrics.push_back(describe_quantity(static_cast<MotionQuantity>(i)));
     }
-    description_.metrics.push_back(describe_quantity(quantity));
   }
   const JointLimits& limits = config_.limits;
   for (std::size_t i = 0; i < robot_->joint_count(); ++i) {
@@ -105,6 +102,9 @@ MotionProblem::MotionProblem(MotionConfig config)
       }
     };
     add("range", config_.limits_range ? joint.upper - joint.lower : kInfinity);
+    if (is_line()) {
+      continue;  // its timing keeps the others
+    }
     add("speed", limits.speed[i]);
     add("acceleration", limits.acceleration[i]);
     add("jerk", limits.jerk[i]);
@@ -122,6 +122,12 @@ MotionProblem::MotionProblem(MotionConfig config)
   std::string reason;
   if (!find_points(*robot_, {}, points, reason)) {
     throw Error(ErrorKind::bad_data, reason);
+  }
+  if (is_line() && !changes_arm()) {
+    lines_ = trace_lines(*robot_, points, reason);
+    if (lines_.empty()) {
+      throw Error(ErrorKind::bad_data, reason);
+    }
   }
   make_variables(points);
   const std::vector<double> start = list_starts(description_.variables);
@@ -142,6 +148,14 @@ MotionProblem::MotionProblem(MotionConfig config)
 void MotionProblem::make_variables(const Eigen::MatrixXd& start) {
   auto& variables = description_.variables;
   const std::size_t intervals = count_intervals();
+  for (std::size_t joint = 0; is_line() && joint < robot_->joint_count(); ++joint) {
+    const MotionBounds& bounds = config_.effort_share;
+    variables.push_back({.name = robot_->joints[joint].name + ".effort_share",
+                         .unit = "1",
+                         .lower = bounds.lower,
+                         .upper = bounds.upper,
+                         .start = bounds.upper});
+  }
   for (std::size_t i = 0; config_.intervals_s.empty() && i < intervals; ++i) {
     // The points between which the interval lies; with virtual knots, two intervals share a way.
     std::size_t from = 0, to = 0;
@@ -205,6 +219,19 @@ void MotionProblem::make_variables(const Eigen::MatrixXd& start) {
   }
 }
 
+bool MotionProblem::has_metric(MotionQuantity quantity) const {
+  switch (quantity) {
+    case MotionQuantity::jerk:
+      return !is_line();
+    case MotionQuantity::clearance:
+      return config_.clearance != nullptr;
+    case MotionQuantity::deflection:
+      return changes_arm();
+    default:
+      return true;
+  }
+}
+
 std::vector<double> MotionProblem::calc_objectives(std::span<const double> quantities) const {
   std::vector<double> objectives;
   double sum = 0;
@@ -256,9 +283,7 @@ Evaluation MotionProblem::aggregate(std::span<const double> /*x*/,
       const auto constraints = numbers.subspan(kMotionQuantities);
       evaluation.constraint_values.assign(constraints.begin(), constraints.end());
       for (std::size_t i = 0; i < kMotionQuantities; ++i) {
-        const auto quantity = static_cast<MotionQuantity>(i);
-        if ((quantity != MotionQuantity::clearance || config_.clearance) &&
-            (quantity != MotionQuantity::deflection || changes_arm())) {
+        if (has_metric(static_cast<MotionQuantity>(i))) {
           evaluation.metrics.push_back(numbers[i]);
         }
       }
@@ -287,7 +312,7 @@ CaseRecord MotionProblem::record_case(std::span<const double> x, const CaseBlock
   const char* const per[] = {"", "/s", "/s2", "/s3"};
   for (std::size_t joint = 0; joint < n; ++joint) {
     const Joint& its = plan->robot->joints[joint];
-    for (int order = 0; order < 4; ++order) {
+    for (int order = 0; order < (is_line() ? 3 : 4); ++order) {  // the jerk of a line has no bound
       CaseRecord::Series series{{fmt::format("{} {}", its.name, kinds[order]),
                                  fmt::format("{}{}", get_length_unit(its), per[order])},
                                 {}};

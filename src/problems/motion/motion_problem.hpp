@@ -2,9 +2,14 @@
 // time stepping are involved: everything is computed on the motion itself, exactly from its pieces
 // (motion_curve.hpp) or at even times. One evaluation is one motion.
 //
-// The decision vector has, in this order: the intervals of the curve (s), unless they are given; the
-// joint positions of each free point; and of each link that is a tube (tube.hpp) its length, its
-// diameter and its wall, as far as they have bounds.
+// The decision vector has, in this order: the intervals of the curve (s), unless they are given, or of
+// the curve `line` the share of its effort limit that each joint may use; the joint positions of each
+// free point; and of each link that is a tube (tube.hpp) its length, its diameter and its wall, as far
+// as they have bounds.
+//
+// On the curve `line`, the tip moves straight from point to point and rests there, in the least time
+// within the limits on rates, accelerations and the shares of the efforts (time_optimal.hpp). These
+// limits are then no constraints, because the motion keeps them at its places; jerks have no bound.
 //
 // Quantities of a motion, with T its duration:
 //   duration      T (s)
@@ -88,6 +93,7 @@ struct MotionConfig {
   std::vector<double> home;         // where the inverse kinematics of tools' poses begins
   std::vector<double> intervals_s;  // empty: variables
   MotionBounds interval_s{0.02, 20};
+  MotionBounds effort_share{0.1, 1};  // of the curve `line`
   JointLimits limits;  // one number per joint, infinite where there is none
   bool limits_range = true;
   std::optional<double> tool_speed_limit_m_per_s, least_clearance_m, deflection_limit_m;
@@ -144,6 +150,18 @@ class MotionProblem final : public Problem {
                                              std::vector<Tube>& tubes) const;
   bool find_points(const RobotModel& robot, std::span<const double> x, Eigen::MatrixXd& points,
                    std::string& reason) const;
+  // Returns the paths of the tip's straight lines between the points. Nothing, and the reason, if the
+  // arm cannot follow one.
+  std::vector<std::vector<PathPlace>> trace_lines(const RobotModel& robot,
+                                                  const Eigen::MatrixXd& points,
+                                                  std::string& reason) const;
+  // Returns the least times of the paths within the limits; nothing, and the reason, if no speed suits
+  // one.
+  std::vector<LeastTime> time_lines(const RobotModel& robot,
+                                    std::span<const std::vector<PathPlace>> paths,
+                                    const JointLimits& limits, std::string& reason) const;
+  std::optional<MotionCurve> make_curve(const RobotModel& robot, const Eigen::MatrixXd& points,
+                                        std::span<const double> x, std::string& reason) const;
   void measure(std::span<const Tube> tubes, AssessedPlan& plan) const;
   void make_constraints(AssessedPlan& plan) const;
   void make_variables(const Eigen::MatrixXd& start);
@@ -152,11 +170,15 @@ class MotionProblem final : public Problem {
     return config_.form.count_intervals(config_.points.size());
   }
   bool changes_arm() const { return !config_.tubes.tubes.empty(); }
+  bool is_line() const { return config_.form.kind == CurveKind::line; }
+  // Returns whether evaluations have the quantity as a metric.
+  bool has_metric(MotionQuantity quantity) const;
 
   MotionConfig config_;
   std::shared_ptr<const RobotModel> robot_;               // that of config_
   std::shared_ptr<const articulated::ChainModel> chain_;  // null if the arm is a variable
   double arm_length_m_ = 1;
+  std::vector<std::vector<PathPlace>> lines_;  // of the nominal arm, unless the arm is a variable
   std::vector<double> penalty_;
   ProblemDescription description_;
 };

@@ -77,7 +77,7 @@ std::vector<double> find_roots(const Polynomial& c, double end) {
 }  // namespace
 
 const std::vector<std::string>& curve_kind_names() {
-  static const std::vector<std::string> names = {"cubic", "quintic", "rest"};
+  static const std::vector<std::string> names = {"cubic", "quintic", "rest", "line"};
   return names;
 }
 
@@ -92,6 +92,9 @@ const std::vector<std::string>& rest_profile_names() {
 }
 
 std::size_t CurveForm::count_intervals(std::size_t points) const {
+  if (kind == CurveKind::line) {
+    return 0;
+  }
   return points - 1 + (kind == CurveKind::cubic && ends == SplineEnds::rest ? 2 : 0);
 }
 
@@ -105,7 +108,7 @@ std::size_t CurveForm::find_knot(std::size_t point, std::size_t points) const {
 MotionCurve::MotionCurve(const CurveForm& form, const MatrixXd& points,
                          std::span<const double> intervals_s)
     : joints_(static_cast<std::size_t>(points.rows())) {
-  assert(points.cols() >= 2);
+  assert(points.cols() >= 2 && form.kind != CurveKind::line);
   assert(intervals_s.size() == form.count_intervals(static_cast<std::size_t>(points.cols())));
   switch (form.kind) {
     case CurveKind::cubic:
@@ -117,22 +120,23 @@ MotionCurve::MotionCurve(const CurveForm& form, const MatrixXd& points,
     case CurveKind::rest:
       add_rests(form.profile, points, intervals_s);
       break;
+    case CurveKind::line:
+      break;
   }
 }
 
 MotionCurve::MotionCurve(std::span<const double> times_s, const MatrixXd& positions,
-                         const MatrixXd& rates, const MatrixXd& accelerations)
+                         const MatrixXd& rates, const MatrixXd& first_accelerations,
+                         const MatrixXd& last_accelerations)
     : joints_(static_cast<std::size_t>(positions.rows())) {
   assert(times_s.size() >= 2);
   for (std::size_t i = 0; i + 1 < times_s.size(); ++i) {
     add_piece(times_s[i + 1] - times_s[i]);
     knots_s_.back() = times_s[i + 1];  // not a sum of differences
     for (std::size_t joint = 0; joint < joints_; ++joint) {
-      const auto get = [&](std::size_t time) {
-        const auto j = static_cast<Index>(joint), k = static_cast<Index>(time);
-        return Eigen::Vector3d(positions(j, k), rates(j, k), accelerations(j, k));
-      };
-      set_quintic(joint, get(i), get(i + 1));
+      const auto j = static_cast<Index>(joint), k = static_cast<Index>(i);
+      set_quintic(joint, {positions(j, k), rates(j, k), first_accelerations(j, k)},
+                  {positions(j, k + 1), rates(j, k + 1), last_accelerations(j, k)});
     }
   }
 }

@@ -33,7 +33,9 @@
 
 namespace armwright {
 
-enum class CurveKind : std::uint8_t { cubic, quintic, rest };
+// `line` is a straight line of the tool in the least time (time_optimal.hpp): it has no intervals of its
+// own.
+enum class CurveKind : std::uint8_t { cubic, quintic, rest, line };
 enum class SplineEnds : std::uint8_t { rest, clamped };
 enum class RestProfile : std::uint8_t { quintic, septic, bang_bang, sine };
 const std::vector<std::string>& curve_kind_names();  // each in the order of the enum
@@ -59,10 +61,12 @@ class MotionCurve {
   // the intervals (s, each > 0) of CurveForm::count_intervals().
   MotionCurve(const CurveForm& form, const Eigen::MatrixXd& points,
               std::span<const double> intervals_s);
-  // Makes the quintic curve through given positions, rates and accelerations (one row per joint, one
-  // column per time). The times (s) rise from 0.
+  // Makes the quintic curve through given positions and rates (one row per joint, one column per time),
+  // with the accelerations at the beginning and at the end of each piece (one column per piece), which
+  // may jump between pieces. The times (s) rise from 0.
   MotionCurve(std::span<const double> times_s, const Eigen::MatrixXd& positions,
-              const Eigen::MatrixXd& rates, const Eigen::MatrixXd& accelerations);
+              const Eigen::MatrixXd& rates, const Eigen::MatrixXd& first_accelerations,
+              const Eigen::MatrixXd& last_accelerations);
 
   std::size_t joint_count() const { return joints_; }
   double duration_s() const { return knots_s_.back(); }

@@ -104,6 +104,32 @@ std::vector<PathPlace> sample_path(const std::function<Eigen::VectorXd(double)>&
   return places;
 }
 
+std::vector<PathPlace> sample_path(const Eigen::MatrixXd& positions) {
+  // The weights of the five places for the derivative at the first, second and third of them, over 12
+  // times the step or its square. At the fourth and fifth, the order is reversed.
+  constexpr double kFirst[3][5] = {{-25, 48, -36, 16, -3}, {-3, -10, 18, -6, 1}, {1, -8, 0, 8, -1}};
+  constexpr double kSecond[3][5] = {
+      {35, -104, 114, -56, 11}, {11, -20, 6, 4, -1}, {-1, 16, -30, 16, -1}};
+  const Eigen::Index count = positions.cols();
+  const double step = 1 / static_cast<double>(count - 1);
+  std::vector<PathPlace> places;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index from = std::clamp<Eigen::Index>(i - 2, 0, count - 5);
+    const bool is_reversed = i - from > 2;
+    const Eigen::Index row = is_reversed ? 4 - (i - from) : i - from;
+    PathPlace place{.q = positions.col(i),
+                    .q_s = Eigen::VectorXd::Zero(positions.rows()),
+                    .q_ss = Eigen::VectorXd::Zero(positions.rows())};
+    for (Eigen::Index k = 0; k < 5; ++k) {
+      const auto column = positions.col(from + (is_reversed ? 4 - k : k));
+      place.q_s += (is_reversed ? -1 : 1) * kFirst[row][k] / (12 * step) * column;
+      place.q_ss += kSecond[row][k] / (12 * step * step) * column;
+    }
+    places.push_back(std::move(place));
+  }
+  return places;
+}
+
 std::vector<PathPlace> measure_path(const MotionCurve& curve, double from_s, double to_s,
                                     std::size_t intervals) {
   const auto n = static_cast<Eigen::Index>(curve.joint_count());
@@ -219,6 +245,7 @@ LeastTime calc_least_time(const RobotModel& robot, double gravity_m_per_s2,
   }
   // Forwards: as fast as the sets allow.
   result.times_s.assign(1, 0);
+  result.rates.assign(1, 0);
   double x = 0;
   for (std::size_t place = 0; place < last; ++place) {
     const auto [lower, upper] = find_controls(lines[place], x);
@@ -232,9 +259,42 @@ LeastTime calc_least_time(const RobotModel& robot, double gravity_m_per_s2,
     }
     result.times_s.push_back(result.times_s.back() + 2 * step / rate);
     x = reached;
+    result.rates.push_back(std::sqrt(x));
   }
   result.duration_s = result.times_s.back();
   return result;
+}
+
+MotionCurve make_fastest_motion(std::span<const std::vector<PathPlace>> paths,
+                                std::span<const LeastTime> times) {
+  std::size_t pieces = 0;
+  for (const std::vector<PathPlace>& path : paths) {
+    pieces += path.size() - 1;
+  }
+  const Eigen::Index rows = paths.front().front().q.size();
+  const auto columns = static_cast<Eigen::Index>(pieces);
+  std::vector<double> times_s = {0};
+  Eigen::MatrixXd positions(rows, columns + 1), rates(rows, columns + 1), first(rows, columns),
+      last(rows, columns);
+  positions.col(0) = paths.front().front().q;
+  rates.col(0).setZero();
+  Eigen::Index at = 0;
+  for (std::size_t part = 0; part < paths.size(); ++part) {
+    const std::vector<PathPlace>& path = paths[part];
+    const LeastTime& least = times[part];
+    const double begin_s = times_s.back();
+    const double step = 1 / static_cast<double>(path.size() - 1);
+    for (std::size_t i = 0; i + 1 < path.size(); ++i, ++at) {
+      const double rate = least.rates[i], next = least.rates[i + 1];
+      const double u = (next * next - rate * rate) / (2 * step);
+      times_s.push_back(begin_s + least.times_s[i + 1]);
+      positions.col(at + 1) = path[i + 1].q;
+      rates.col(at + 1) = path[i + 1].q_s * next;
+      first.col(at) = path[i].q_s * u + path[i].q_ss * (rate * rate);
+      last.col(at) = path[i + 1].q_s * u + path[i + 1].q_ss * (next * next);
+    }
+  }
+  return {times_s, positions, rates, first, last};
 }
 
 }  // namespace armwright

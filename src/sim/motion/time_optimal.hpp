@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ struct PathPlace {
 // central differences of second order.
 std::vector<PathPlace> sample_path(const std::function<Eigen::VectorXd(double)>& position,
                                    std::size_t intervals, double step = 1e-4);
+// Returns the path's places from joint positions at even s (one row per joint, one column per place, at
+// least five): differences of five places, of fourth order in q_s and of third order or more in q_ss.
+std::vector<PathPlace> sample_path(const Eigen::MatrixXd& positions);
 
 // Returns the places of a motion between two times (s) at which it rests, at even distances of the way
 // of its joints: s is the way from `from_s` on, sigma = integral of |q'| dt, over the whole way. Near a
@@ -50,6 +54,7 @@ std::vector<PathPlace> measure_path(const MotionCurve& curve, double from_s, dou
 struct LeastTime {
   double duration_s = 0;        // 0 also if nothing limits the motion
   std::vector<double> times_s;  // when the arm is at each place
+  std::vector<double> rates;    // s' there
   // Set if no speed suits the path: where, and which joint's limit leaves none.
   std::optional<std::size_t> stuck_place;
   std::size_t stuck_joint = 0;
@@ -58,5 +63,9 @@ struct LeastTime {
 // place, `stuck_place` names it and the time is 0.
 LeastTime calc_least_time(const RobotModel& robot, double gravity_m_per_s2,
                           const std::vector<PathPlace>& path, const JointLimits& limits);
+// Returns the motion along paths that follow each other, from rest to rest on each, in their least
+// times. Accelerations jump between places, where u does.
+MotionCurve make_fastest_motion(std::span<const std::vector<PathPlace>> paths,
+                                std::span<const LeastTime> times);
 
 }  // namespace armwright

@@ -134,6 +134,7 @@ Specimen make_specimen(const std::string& path) {
       {"identification.payload_com_m", {"identification.payload_kg=1"}},
       {"excitation.payload_com_m", {"excitation.payload_kg=1"}},
       {"motion.payload_com_m", {"motion.payload_kg=1"}},
+      {"motion.effort_share_bounds", {"motion.curve=line"}},
       {"racing.first_cases", {"racing.kind=halving"}},
       {"racing.eta", {"racing.kind=halving"}},
       {"racing.margin", {"racing.kind=abandonment"}},

@@ -2,10 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/temporary_folder.hpp"
 #include "problems/config/problem_loader.hpp"
 #include "sim/dynamics/arm_equations.hpp"
 
@@ -165,6 +168,88 @@ TEST(MotionProblem, RecordsEveryJointsMotionAndEffort) {
   EXPECT_EQ(record.series[3].quantity.unit, "rad/s3");
 }
 
+// The oracle: 0.4143 s with the whole limits, on 200 intervals.
+TEST(Line, TakesTheLeastTimeOfTheOracle) {
+  const LoadedProblem loaded = load_problem("chaiyaratana-line");
+  const MotionProblem& problem = get_motion(loaded);
+  std::string reason;
+  const auto plan = problem.assess(std::vector<double>{1, 1, 1}, 201, reason);
+  ASSERT_TRUE(plan) << reason;
+  EXPECT_NEAR(plan->curve.duration_s(), 0.4143, 5e-5);
+  // The motion is the line: the efforts between the places stay within the limits, but for what the
+  // places leave out, and the tip is on the line and ends where it should.
+  const double limits[] = {10, 12, 4};
+  for (Eigen::Index joint = 0; joint < 3; ++joint) {
+    EXPECT_LT(plan->efforts.col(joint).cwiseAbs().maxCoeff(), 1.01 * limits[joint]) << joint;
+  }
+  EXPECT_GT(plan->efforts.col(1).cwiseAbs().maxCoeff(), 11.9);
+  const Eigen::Vector3d from(1.2, -0.6, 0.4), to(1.2, 0.6, 0.8);
+  std::vector<double> q(3);
+  for (const double t : plan->times_s) {
+    plan->curve.calc(t, 0, q);
+    const double r = std::cos(q[1]) + std::cos(q[1] + q[2]);
+    const Eigen::Vector3d tip(r * std::cos(q[0]), r * std::sin(q[0]),
+                              std::sin(q[1]) + std::sin(q[1] + q[2]));
+    EXPECT_LT((tip - from).cross((to - from).normalized()).norm(), 1e-6);
+  }
+  EXPECT_TRUE(plan->constraints.empty() || *std::ranges::max_element(plan->constraints) <= 0);
+  const auto bound_s = problem.calc_bound(*plan);
+  ASSERT_TRUE(bound_s);
+  EXPECT_NEAR(*bound_s, plan->curve.duration_s(), 1e-3);
+}
+
+// Without gravity, k times all limits take 1 / sqrt(k) times the time.
+TEST(Line, WithoutGravitySharesScaleTheTimeByTheirRoot) {
+  const LoadedProblem loaded =
+      load_problem("chaiyaratana-line", std::vector<std::string>{"physics.gravity_m_per_s2=0"});
+  const double whole_s = judge(loaded, {1, 1, 1}).objectives.at(0);
+  EXPECT_NEAR(whole_s / judge(loaded, {0.64, 0.64, 0.64}).objectives.at(0), 0.8, 1e-9);
+  EXPECT_LT(whole_s, 0.3667);
+}
+
+TEST(Line, RestsAtThePointsBetween) {
+  const LoadedProblem loaded = load_problem(
+      "chaiyaratana-line",
+      std::vector<std::string>{
+          "motion.point=[{tool_m=[1.2,-0.6,0.4]},{tool_m=[1.2,0,0.6]},{tool_m=[1.2,0.6,0.8]}]"});
+  std::string reason;
+  const auto plan = get_motion(loaded).assess(std::vector<double>{1, 1, 1}, 201, reason);
+  ASSERT_TRUE(plan) << reason;
+  const double middle_s = plan->curve.knots_s().at(200);
+  std::vector<double> rates(3);
+  plan->curve.calc(middle_s, 1, rates);
+  for (const double rate : rates) {
+    EXPECT_NEAR(rate, 0, 1e-9);
+  }
+  EXPECT_GT(plan->curve.duration_s(), 0.5);
+}
+
+TEST(MotionProblem, TakesItsPointsFromAFile) {
+  const TemporaryFolder folder;
+  write_file(folder.path() / "points.csv",
+             "position_1_rad,position_2_rad,position_3_rad\n0,1,-1\n0.2,1.1,-1.2\n0.3,1,-1\n");
+  const auto load = [&](const std::string& points) {
+    return load_problem("chaiyaratana-line",
+                        std::vector<std::string>{"motion.curve=cubic", "motion.point=" + points,
+                                                 "objective.kind=sum",
+                                                 "objective.quantities=[\"duration\"]",
+                                                 "objective.weights=[1]"});
+  };
+  const std::string file = "{file=\"" + (folder.path() / "points.csv").string() + "\"}";
+  const LoadedProblem loaded = load("[" + file + ",{free=true},{joints=[0,1,-1.5]}]");
+  const auto& points = get_motion(loaded).config().points;
+  ASSERT_EQ(points.size(), 5u);
+  EXPECT_EQ((*points[1].q)[1], 1.1);
+  EXPECT_FALSE(points[3].q);
+  EXPECT_TRUE(loaded.input_hashes.contains("points.csv"));
+  try {
+    load("[" + file + ",{joints=[0.3,1,-1]}]");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("point 4 is the same as point 3"));
+  }
+}
+
 struct BadMotion {
   std::string name, problem;
   std::vector<std::string> overrides;
@@ -240,7 +325,35 @@ INSTANTIATE_TEST_SUITE_P(
         BadMotion{"TwoKindsOfPoint",
                   "gasparetto",
                   {"motion.point=[{joints=[0,0,0,0,0,0],free=true},{joints=[1,0,0,0,0,0]}]"},
-                  "exactly one of joints, tool_m and free"}),
+                  "exactly one of joints, tool_m, file and free"},
+        BadMotion{"LineOfJoints",
+                  "chaiyaratana-line",
+                  {"motion.point=[{joints=[0,1,-1]},{tool_m=[1.2,0.6,0.8]}]"},
+                  "point 1: a line goes from one tool_m to the next"},
+        BadMotion{"LineOfNoLength",
+                  "chaiyaratana-line",
+                  {"motion.point=[{tool_m=[1.2,0.6,0.8]},{tool_m=[1.2,0.6,0.8]}]"},
+                  "point 2 is the same as point 1"},
+        BadMotion{"LineWithJerk",
+                  "chaiyaratana-line",
+                  {"objective.quantities=[\"duration\",\"jerk\"]"},
+                  "the jerk of a line has no bound"},
+        BadMotion{"LineWithJerkLimit",
+                  "chaiyaratana-line",
+                  {"motion.jerk_limits=[5]"},
+                  "its jerk has no bound; leave this out"},
+        BadMotion{"LineOutOfReach",
+                  "chaiyaratana-line",
+                  {"motion.point=[{tool_m=[1.4,-1.2,0.4]},{tool_m=[1.5,1.1,0.8]}]"},
+                  "between points 1 and 2: the arm cannot follow the straight line, it fails at ("},
+        BadMotion{"LineThatNoSpeedSuits",
+                  "chaiyaratana-line",
+                  {"motion.effort_limits=[10,5,4]"},
+                  "between points 1 and 2: no speed suits the line at "},
+        BadMotion{"LineWithoutEffortLimits",
+                  "chaiyaratana-line",
+                  {"motion.effort_limits=[]"},
+                  "joint 'waist' has no limit, and the line is timed by them"}),
     [](const auto& its) { return its.param.name; });
 
 }  // namespace
