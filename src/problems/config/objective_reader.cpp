@@ -121,8 +121,8 @@ const SettingTable kObjectiveSettings{
 TrackingObjective read_objective(const ConfigTable& table) {
   using Kind = TrackingObjective::Kind;
   TrackingObjective objective;
-  objective.kind =
-      static_cast<Kind>(std::min(table.get_choice(kObjectiveKind), std::size_t{Kind::front}));
+  objective.kind = static_cast<Kind>(
+      std::min(table.get_choice(kObjectiveKind), static_cast<std::size_t>(Kind::front)));
   objective.logarithm = table.get(kObjectiveLogarithm);
   if (objective.logarithm && objective.kind == Kind::front) {
     table.refuse(kObjectiveLogarithm,

@@ -105,7 +105,7 @@ struct TrackingObjective {
   double energy_scale_j = 1;     // E_0
   double duration_weight = 0;    // w_T, for the same objectives
   double duration_scale_s = 1;   // T_0
-  std::vector<WeightedQuantity> front;  // set_front() fills it
+  std::vector<WeightedQuantity> front = {};  // set_front() fills it
 
   // Makes the objective a front, with the weights and scales above where its terms have them.
   void set_front(std::vector<WeightedQuantity> terms);

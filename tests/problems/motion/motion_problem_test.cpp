@@ -226,7 +226,7 @@ TEST(Line, RestsAtThePointsBetween) {
 
 TEST(MotionProblem, TakesItsPointsFromAFile) {
   const TemporaryFolder folder;
-  write_file(folder.path() / "points.csv",
+  write_file_atomically(folder.path() / "points.csv",
              "position_1_rad,position_2_rad,position_3_rad\n0,1,-1\n0.2,1.1,-1.2\n0.3,1,-1\n");
   const auto load = [&](const std::string& points) {
     return load_problem("chaiyaratana-line",
