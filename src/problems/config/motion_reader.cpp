@@ -155,7 +155,7 @@ std::optional<MotionBounds> read_bounds(const ConfigTable& table,
   return MotionBounds{(*values)[0], (*values)[1]};
 }
 
-constexpr std::size_t kMostPoints = 200;
+constexpr std::size_t kMostFilePoints = 200;
 
 // Returns the key that gives the joint positions of a point.
 const std::string& get_joints_key(const ConfigTable& table) {
@@ -166,10 +166,10 @@ std::vector<MotionPoint> read_point_file(const ConfigTable& table, const RobotMo
                                          LoadedProblem& loaded) {
   const std::filesystem::path file = find_beside(table, kPointFile);
   const MotionSamples samples = read_motion_file(file, robot, false);
-  if (samples.times_s.size() > kMostPoints) {
+  if (samples.times_s.size() > kMostFilePoints) {
     table.refuse(kPointFile,
                  fmt::format("it has {} points, and a motion has {} at most; leave out points",
-                             samples.times_s.size(), kMostPoints));
+                             samples.times_s.size(), kMostFilePoints));
   }
   add_input(loaded, file);
   std::vector<MotionPoint> points;

@@ -185,14 +185,14 @@ std::vector<WeightedQuantity> read_quantities(const ConfigTable& table,
 }
 
 void read_front(const ConfigTable& table, TrackingConfig& config) {
-  using Quantity = TrackingQuantity;
+  using Of = TrackingQuantity;
   TrackingObjective& objective = config.objective;
   if (objective.kind != TrackingObjective::Kind::front) {
     return;
   }
   if (table.get(kObjectiveKind) == kErrorVsTorque) {
-    objective.set_front({{static_cast<std::size_t>(Quantity::error), 1, objective.error_scale_m},
-                         {static_cast<std::size_t>(Quantity::torque), objective.torque_weight,
+    objective.set_front({{static_cast<std::size_t>(Of::error), 1, objective.error_scale_m},
+                         {static_cast<std::size_t>(Of::torque), objective.torque_weight,
                           objective.torque_scale_n_m}});
     return;
   }
@@ -219,20 +219,20 @@ void read_front(const ConfigTable& table, TrackingConfig& config) {
                  fmt::format("'{}' is the same for all designs here; {}", names[term], why));
   };
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    const auto quantity = static_cast<Quantity>(std::min(terms[i].quantity, first));
-    if (quantity == Quantity::torque && std::ranges::none_of(config.parameters, is_effort)) {
+    const auto quantity = static_cast<Of>(std::min(terms[i].quantity, first));
+    if (quantity == Of::torque && std::ranges::none_of(config.parameters, is_effort)) {
       refuse_constant(i, "add effort_min and effort_max to variables.optimize");
     }
-    if (quantity == Quantity::duration && !changes_speed(config)) {
+    if (quantity == Of::duration && !changes_speed(config)) {
       refuse_constant(i, "set variables.task = [\"speed\"]");
     }
-    if (quantity == Quantity::moving_mass && !has_mass_metric(config)) {
+    if (quantity == Of::moving_mass && !has_mass_metric(config)) {
       refuse_constant(i, "add length_scale or section_scale to variables.optimize, or [motors]");
     }
     if (!table.has(kObjectiveScales)) {
-      terms[i].scale = quantity == Quantity::error         ? objective.error_scale_m
-                       : quantity == Quantity::torque      ? objective.torque_scale_n_m
-                       : quantity == Quantity::requirement ? config.requirements[terms[i].quantity - first].limit
+      terms[i].scale = quantity == Of::error         ? objective.error_scale_m
+                       : quantity == Of::torque      ? objective.torque_scale_n_m
+                       : quantity == Of::requirement ? config.requirements[terms[i].quantity - first].limit
                                                            : 1;
     }
   }
