@@ -227,23 +227,21 @@ TEST(Line, RestsAtThePointsBetween) {
 TEST(MotionProblem, TakesItsPointsFromAFile) {
   const TemporaryFolder folder;
   write_file_atomically(folder.path() / "points.csv",
-             "position_1_rad,position_2_rad,position_3_rad\n0,1,-1\n0.2,1.1,-1.2\n0.3,1,-1\n");
+             "position_1_rad,position_2_rad,position_3_rad,position_4_rad,position_5_rad,position_6_rad"
+             "\n0,1,-1,0,0,0\n0.2,1.1,-1.2,0,0,0\n0.3,1,-1,0,0,0\n");
   const auto load = [&](const std::string& points) {
-    return load_problem("chaiyaratana-line",
-                        std::vector<std::string>{"motion.curve=cubic", "motion.point=" + points,
-                                                 "objective.kind=sum",
-                                                 "objective.quantities=[\"duration\"]",
-                                                 "objective.weights=[1]"});
+    return load_problem("gasparetto", std::vector<std::string>{"motion.range_limits=false",
+                                                               "motion.point=" + points});
   };
   const std::string file = "{file=\"" + (folder.path() / "points.csv").string() + "\"}";
-  const LoadedProblem loaded = load("[" + file + ",{free=true},{joints=[0,1,-1.5]}]");
+  const LoadedProblem loaded = load("[" + file + ",{free=true},{joints=[0,1,-1.5,0,0,0]}]");
   const auto& points = get_motion(loaded).config().points;
   ASSERT_EQ(points.size(), 5u);
   EXPECT_EQ((*points[1].q)[1], 1.1);
   EXPECT_FALSE(points[3].q);
   EXPECT_TRUE(loaded.input_hashes.contains("points.csv"));
   try {
-    load("[" + file + ",{joints=[0.3,1,-1]}]");
+    load("[" + file + ",{joints=[0.3,1,-1,0,0,0]}]");
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("point 4 is the same as point 3"));
@@ -344,7 +342,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "its jerk has no bound; leave this out"},
         BadMotion{"LineOutOfReach",
                   "chaiyaratana-line",
-                  {"motion.point=[{tool_m=[1.4,-1.2,0.4]},{tool_m=[1.5,1.1,0.8]}]"},
+                  {"motion.point=[{tool_m=[-1,-0.5,0.5]},{tool_m=[-1,0.5,0.5]}]"},
                   "between points 1 and 2: the arm cannot follow the straight line, it fails at ("},
         BadMotion{"LineThatNoSpeedSuits",
                   "chaiyaratana-line",

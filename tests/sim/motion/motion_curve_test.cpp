@@ -195,12 +195,16 @@ TEST(MotionCurve, OfSamplesPassesTheirPositionsRatesAndAccelerations) {
   q << 0, 0.2, -0.3, 1;
   v << 0, 0.5, 0.1, 0;
   a << 0, -1, 2, 0;
-  const MotionCurve curve(times, q, v, a);
+  const MotionCurve curve(times, q, v, a.leftCols(3), a.rightCols(3));
   for (int k = 0; k < 4; ++k) {
     EXPECT_NEAR(get_value(curve, times[k], 0), q(0, k), 1e-14);
     EXPECT_NEAR(get_value(curve, times[k], 1), v(0, k), 1e-13);
     EXPECT_NEAR(get_value(curve, times[k], 2), a(0, k), 1e-12);
   }
+  // Accelerations may jump between pieces.
+  const MotionCurve jumping(times, q, v, a.leftCols(3), 2 * a.rightCols(3));
+  EXPECT_NEAR(get_value(jumping, 0.25 - 1e-9, 2), -2, 1e-6);
+  EXPECT_NEAR(get_value(jumping, 0.25 + 1e-9, 2), -1, 1e-6);
 }
 
 }  // namespace

@@ -226,6 +226,7 @@ TEST(JerkIntegral, OfAConstantJerkIsItsSquareTimesTheTime) {
   RobotModel robot;
   robot.joints.resize(1);
   TargetTable table = make_table(1, 2);
+  table.joints = 1;
   table.start_positions = {0.25};
   TrackingResult result;
   constexpr double kJerk = 3;
