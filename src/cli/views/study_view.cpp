@@ -67,6 +67,11 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
   const bool has_cost = std::isfinite(problem.best_known) && !problem.has_front;
   std::vector<Column> columns = {{"optimizer", false}, {"median"},   {"quartiles"},
                                  {"mean rank"},        {"no value"}, {"A12, p"}};
+  const bool has_igd = problem.has_front && std::ranges::any_of(
+      problem.optimizers, [](const OptimizerResult& one) { return !one.igd_plus.empty(); });
+  if (has_igd) {
+    columns.push_back({"IGD+"});
+  }
   if (problem.margin.optimum) {
     columns.push_back({"success"});
   }
@@ -95,6 +100,10 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
         fmt::format("{:.2f}", one.mean_rank),
         one.infinite == 0 ? "" : fmt::format("{}", one.infinite),
         describe_against_leader(problem, o)};
+    if (has_igd) {
+      row.push_back(one.igd_plus.empty() ? "-"
+                                         : fmt::format("{:.3g}", calc_spread(one.igd_plus).median));
+    }
     if (problem.margin.optimum) {
       row.push_back(fmt::format("{}/{}", one.successes, one.values.size()));
     }

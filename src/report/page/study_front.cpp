@@ -5,6 +5,7 @@
 #include "report/evidence/page_json.hpp"
 #include "report/page/study_parts.hpp"
 #include "study/statistics/pareto.hpp"
+#include "study/statistics/summary.hpp"
 
 namespace armwright {
 namespace {
@@ -70,7 +71,9 @@ json make_study_front(const StudyPlan& plan, const StudyProblem& studied,
     objectives.push_back(make_quantity(objective, !studied.loaded.tracking()));
   }
   json optimizers = json::array();
-  for (const StudyOptimizer& optimizer : plan.optimizers) {
+  for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
+    const StudyOptimizer& optimizer = plan.optimizers[o];
+    const std::vector<double>& igd_plus = result.optimizers[o].igd_plus;
     json points = json::array();
     std::vector<Points> fronts;
     for (const CellOutcome* cell : list_cells_of(cells, optimizer.label)) {
@@ -81,6 +84,9 @@ json make_study_front(const StudyPlan& plan, const StudyProblem& studied,
     }
     const bool is_plane = problem.objectives.size() == 2 && !fronts.empty();
     optimizers.push_back({{"points", std::move(points)},
+                          {"igd_plus", igd_plus.empty()
+                                           ? json()
+                                           : finite_or_null(calc_spread(igd_plus).median)},
                           {"attainment", is_plane ? make_surfaces(fronts) : json::array()}});
   }
   return {{"objectives", std::move(objectives)},

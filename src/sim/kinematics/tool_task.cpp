@@ -37,8 +37,8 @@ Eigen::Vector3d calc_rpy(const Eigen::Matrix3d& turn) {
   const double across = std::hypot(turn(0, 0), turn(1, 0));
   const double pitch = std::atan2(-turn(2, 0), across);
   // At a pitch of +-pi/2 roll and yaw turn about the same axis. The whole turn counts as yaw.
-  constexpr double kVertical = 1e-9;
-  if (across < kVertical) {
+  constexpr double kUpright = 1e-9;
+  if (across < kUpright) {
     return {0, pitch, std::atan2(-turn(0, 1), turn(1, 1))};
   }
   return {std::atan2(turn(2, 1), turn(2, 2)), pitch, std::atan2(turn(1, 0), turn(0, 0))};

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Rounding that is allowed where two lines meet, as a share of the numbers there.
-constexpr double kRounding = 1e-12;
+constexpr double kMeetingRounding = 1e-12;
 
 // a u + b x <= c.
 struct Line {
@@ -61,7 +61,7 @@ Interval find_range(const std::vector<Line>& lines, double most) {
     const double size = std::isfinite(lower) && std::isfinite(upper)
                             ? std::max(std::abs(lower), std::abs(upper))
                             : 0;
-    if (lower > upper + kRounding * size) {
+    if (lower > upper + kMeetingRounding * size) {
       return;
     }
     range.lower = range.empty ? x : std::min(range.lower, x);

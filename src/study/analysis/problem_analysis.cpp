@@ -18,17 +18,24 @@ namespace {
 constexpr int kEcdfTargets = 31;
 constexpr double kEcdfDecades = 3;
 
-// Returns the reference point of the hypervolume. It lies beyond the common front of all runs by a
-// tenth of the front's extent. Like the best known value, it depends on the optimizers that take
-// part.
-std::vector<double> calc_reference_point(std::span<const CellOutcome> cells, std::size_t objectives,
-                                         std::vector<double>& ideal) {
+// The common front of all runs, and what the fronts of single runs are measured with. Like the best
+// known value, it depends on the optimizers that take part.
+struct CommonFront {
+  std::vector<std::vector<double>> points;
+  std::vector<double> ideal;      // the least value of each objective
+  std::vector<double> extent;     // of the front, per objective
+  std::vector<double> reference;  // of the hypervolume: a tenth of the extent beyond the front
+};
+
+CommonFront find_common_front(std::span<const CellOutcome> cells, std::size_t objectives) {
   std::vector<std::vector<double>> all;
   for (const CellOutcome& cell : cells) {
     all.insert(all.end(), cell.front.begin(), cell.front.end());
   }
-  ideal.assign(objectives, 0);
-  std::vector<double> reference(objectives, 1);
+  CommonFront common{.points = {},
+                     .ideal = std::vector<double>(objectives, 0),
+                     .extent = std::vector<double>(objectives, 1),
+                     .reference = std::vector<double>(objectives, 1)};
   const auto front = find_non_dominated(all);
   for (std::size_t k = 0; k < objectives && !front.empty(); ++k) {
     const auto by_objective = [&](std::size_t a, std::size_t b) { return all[a][k] < all[b][k]; };
@@ -36,10 +43,16 @@ std::vector<double> calc_reference_point(std::span<const CellOutcome> cells, std
     const double lower = all[*least][k];
     const double upper = all[*most][k];
     const double extent = upper > lower ? upper - lower : upper != 0 ? std::abs(upper) : 1;
-    ideal[k] = lower;
-    reference[k] = upper + 0.1 * extent;
+    common.ideal[k] = lower;
+    common.extent[k] = extent;
+    common.reference[k] = upper + 0.1 * extent;
   }
-  return reference;
+  for (const std::size_t i : front) {
+    if (std::ranges::find(common.points, all[i]) == common.points.end()) {
+      common.points.push_back(all[i]);
+    }
+  }
+  return common;
 }
 
 // Returns the share of the box from the ideal to the reference point that the front does not
@@ -213,9 +226,10 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
       std::ranges::all_of(cells, [](const CellOutcome& cell) { return cell.trace.has_value(); });
   set_best_and_start(cells, result);
   result.targets = make_targets(result.best_known, result.start);
-  std::vector<double> ideal;
+  CommonFront common;
   if (result.has_front) {
-    result.reference_point = calc_reference_point(cells, description.objectives.size(), ideal);
+    common = find_common_front(cells, description.objectives.size());
+    result.reference_point = common.reference;
   }
   std::vector<std::vector<double>> values;
   std::vector<std::vector<const CellOutcome*>> all_runs;
@@ -231,8 +245,11 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
       }
       runs.push_back(&cell);
       const double value =
-          result.has_front ? calc_missed_volume(cell, ideal, result.reference_point) : cell.value;
+          result.has_front ? calc_missed_volume(cell, common.ideal, common.reference) : cell.value;
       one.values.push_back(value);
+      if (!common.points.empty()) {
+        one.igd_plus.push_back(calc_igd_plus(cell.front, common.points, common.extent));
+      }
       one.successes += result.margin.is_success(value) ? 1 : 0;
       one.infinite += std::isfinite(value) ? 0 : 1;
       one.infeasible += cell.violation > plan.constraint_tolerance ? 1 : 0;

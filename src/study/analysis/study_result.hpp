@@ -78,6 +78,9 @@ struct FinalCheck {
 // The statistics of one optimizer on one problem.
 struct OptimizerResult {
   std::vector<double> values;  // one per replicate
+  // Only for several objectives: IGD+ of each replicate's front, from the common front of all runs, with
+  // its extent as the unit (pareto.hpp). `values` alone decides who is better.
+  std::vector<double> igd_plus;
   int successes = 0;           // number of replicates with a success (Margin::is_success())
   int infinite = 0;            // number of replicates without a value
   int infeasible = 0;          // those of them whose winner violates a constraint on the test set

@@ -52,6 +52,26 @@ std::string make_cells(const StudyResult& result) {
   return csv;
 }
 
+// Has one row per run of a problem with several objectives: how good its front is.
+std::string make_indicators(const StudyPlan& plan, const StudyResult& result) {
+  std::string csv = "problem,optimizer,replicate,missed_hypervolume,igd_plus\n";
+  for (const ProblemResult& problem : result.problems) {
+    for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
+      const OptimizerResult& one = problem.optimizers[o];
+      std::size_t run = 0;  // `values` and `igd_plus` are in the order of the cells
+      for (const CellOutcome& cell : result.cells) {
+        if (cell.problem == problem.label && cell.optimizer == plan.optimizers[o].label &&
+            run < one.igd_plus.size()) {
+          csv += fmt::format("{},{},{},{},{}\n", quote_csv(problem.label), name(plan, o),
+                             cell.replicate, number(one.values[run]), number(one.igd_plus[run]));
+          ++run;
+        }
+      }
+    }
+  }
+  return csv;
+}
+
 // Has one row per objective and metric of every winner, on the test set.
 std::string make_metrics(const StudyPlan& plan, std::span<const CellOutcome> cells) {
   std::string csv = "problem,optimizer,replicate,kind,name,unit,value\n";
@@ -352,6 +372,12 @@ json optimizer_to_json(const StudyPlan& plan, const ProblemResult& problem,
             {"targets", target_times_to_json(plan, problem, one)},
             {"failed_cases", failures_to_json(one)},
             {"final", nullptr}};
+  if (!one.igd_plus.empty()) {
+    j["igd_plus"] = json::array();
+    for (const double value : one.igd_plus) {
+      j["igd_plus"].push_back(value_to_json(value));
+    }
+  }
   if (const auto& check = one.final_check) {
     j["final"] = {{"engine", check->engine},
                   {"replicate", check->replicate},
@@ -460,6 +486,7 @@ void write_study_tables(const StudyPlan& plan, const StudyResult& result,
   }
   if (has_fronts(result)) {
     write("fronts.csv", make_fronts(result));
+    write("indicators.csv", make_indicators(plan, result));
     write("attainment.csv", make_attainment(plan, result));
   }
   const auto verdict = describe_verdict(plan, result);

@@ -18,7 +18,7 @@
 //   ecdf.csv               share of (run, target) pairs reached over the budget
 //   data_profiles.csv, performance_profiles.csv
 //   ranking.csv            mean ranks over all problems, and with one problem left out
-//   fronts.csv, attainment.csv   only for several objectives
+//   fronts.csv, attainment.csv, indicators.csv   only for several objectives
 //   sets.csv               every set of test cases with the hash of its content
 #pragma once
 

@@ -221,7 +221,17 @@ std::optional<CellOutcome> load_cell(const StudyPlan& plan, const Cell& cell,
   if (!path_exists(file)) {
     return std::nullopt;
   }
-  CellOutcome outcome = parse_cell(read_checked_file(file, kCellLimit_bytes), file);
+  std::string text;
+  try {
+    text = read_checked_file(file, kCellLimit_bytes);
+  } catch (const Error&) {
+    // A process that publishes the same cell may have moved this one aside, and back, since.
+    if (!path_exists(file)) {
+      return std::nullopt;
+    }
+    text = read_checked_file(file, kCellLimit_bytes);
+  }
+  CellOutcome outcome = parse_cell(text, file);
   const StudyProblem& problem = plan.problems[cell.problem];
   if (outcome.problem != problem.label ||
       outcome.optimizer != plan.optimizers[cell.optimizer].label ||

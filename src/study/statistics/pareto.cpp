@@ -112,6 +112,38 @@ double calc_hypervolume(std::span<const std::vector<double>> points,
   return calc_volume(std::move(inside), reference, reference.size());
 }
 
+double calc_igd_plus(std::span<const std::vector<double>> points,
+                     std::span<const std::vector<double>> reference,
+                     std::span<const double> extent) {
+  const auto is_finite = [](const Point& point) {
+    return std::ranges::all_of(point, [](double value) { return std::isfinite(value); });
+  };
+  if (reference.empty() || !std::ranges::all_of(reference, is_finite)) {
+    throw std::invalid_argument("IGD+: the reference front must be finite and not empty");
+  }
+  if (check_table(reference, "IGD+") != extent.size() ||
+      (!points.empty() && check_table(points, "IGD+") != extent.size())) {
+    throw std::invalid_argument("IGD+: the points have different dimensions");
+  }
+  if (!std::ranges::all_of(extent, [](double one) { return std::isfinite(one) && one > 0; })) {
+    throw std::invalid_argument("IGD+: the extent must be positive");
+  }
+  double sum = 0;
+  for (const Point& z : reference) {
+    double least = kInfinity;
+    for (const Point& point : points) {
+      double square = is_finite(point) ? 0 : kInfinity;
+      for (std::size_t k = 0; k < extent.size(); ++k) {
+        const double worse = std::max(0.0, (point[k] - z[k]) / extent[k]);
+        square += worse * worse;
+      }
+      least = std::min(least, square);
+    }
+    sum += std::sqrt(least);
+  }
+  return sum / static_cast<double>(reference.size());
+}
+
 std::vector<std::vector<double>> calc_attainment_surface(
     std::span<const std::vector<std::vector<double>>> fronts, double level) {
   if (!(level > 0 && level <= 1)) {

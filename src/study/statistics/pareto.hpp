@@ -25,6 +25,18 @@ std::vector<std::size_t> find_non_dominated(std::span<const std::vector<double>>
 double calc_hypervolume(std::span<const std::vector<double>> points,
                         std::span<const double> reference);
 
+// Returns the inverted generational distance plus (IGD+), smaller is better: the mean over the points z of
+// the front `reference` of the least distance of `points` from z, in which only objectives that are
+// worse than those of z count: sqrt(sum_k max(p_k - z_k, 0)^2). Objectives count in units of `extent`, one
+// positive number per objective. Points with an infinite objective do not count; without any point the
+// result is infinite. If all points of one set are dominated by those of another, its value is never
+// smaller. Source: Ishibuchi, H., Masuda, H., Tanigaki, Y. and Nojima, Y. 2015, Modified distance
+// calculation in generational distance and inverted generational distance, EMO. The reference must be
+// finite and have at least one point.
+double calc_igd_plus(std::span<const std::vector<double>> points,
+                     std::span<const std::vector<double>> reference,
+                     std::span<const double> extent);
+
 // Returns the empirical attainment surface of two objectives. `fronts` holds one set of points per
 // run; dominated points are allowed. A run attains every point that one of its own points equals or
 // surpasses in both objectives. The result is the corners, by increasing first objective, of the

@@ -240,6 +240,16 @@ TEST_F(StudyTest, FrontsAreComparedByTheHypervolumeTheyMiss) {
   EXPECT_LT(problem.optimizers[1].spread.median, 1);
   const auto tables = read_tree(temporary_ / "study" / "tables");
   EXPECT_TRUE(tables.contains("fronts.csv"));
+  EXPECT_THAT(tables.at("indicators.csv"),
+              StartsWith("problem,optimizer,replicate,missed_hypervolume,igd_plus\nq2-pareto,"));
+  EXPECT_EQ(std::ranges::count(tables.at("indicators.csv"), '\n'), 1 + 2 * 3);
+  for (const OptimizerResult& one : problem.optimizers) {
+    ASSERT_EQ(one.igd_plus.size(), 3u);
+    for (const double value : one.igd_plus) {
+      EXPECT_GE(value, 0);
+      EXPECT_LT(value, 100);
+    }
+  }
   EXPECT_THAT(tables.at("metrics.csv"),
               HasSubstr("q2-pareto,pagmo:maco,1,metric,total_torque,N m,"));
   EXPECT_GT(std::ranges::count(tables.at("attainment.csv"), '\n'), 2);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "base/random.hpp"
@@ -41,6 +43,48 @@ TEST(Hypervolume, IsTheVolumeOfUnitedBoxes) {
   EXPECT_EQ(calc_hypervolume(Points{{1, 2, 3}}, std::array{2.0, 4.0, 8.0}), 10);
   EXPECT_EQ(calc_hypervolume(Points{{3, 5}, {1, 9}}, std::array{4.0, 8.0}), 3);
   EXPECT_EQ(calc_hypervolume(Points{{3}, {-1}, {7}}, std::array{4.0}), 5);
+}
+
+TEST(IgdPlus, CountsOnlyWhatIsWorseThanTheReference) {
+  constexpr std::array kUnit = {1.0, 1.0};
+  const Points front = {{0, 4}, {2, 2}, {4, 0}};
+  EXPECT_EQ(calc_igd_plus(front, front, kUnit), 0);
+  EXPECT_EQ(calc_igd_plus(Points{{-1, -1}}, front, kUnit), 0);
+  // From (3, 3): 3 to the first and the last, sqrt(2) to the middle.
+  EXPECT_NEAR(calc_igd_plus(Points{{3, 3}}, front, kUnit), (3 + std::sqrt(2) + 3) / 3, 1e-15);
+  // (1, 9) is as good as (2, 2) in the first objective, and 7 worse in the second.
+  EXPECT_NEAR(calc_igd_plus(Points{{3, 3}, {1, 9}}, Points{{2, 2}}, kUnit), std::sqrt(2), 1e-15);
+  EXPECT_NEAR(calc_igd_plus(Points{{1, 9}}, Points{{2, 2}}, kUnit), 7, 1e-15);
+  // In units of the extent, and in three objectives.
+  EXPECT_NEAR(calc_igd_plus(Points{{1, 9}}, Points{{2, 2}}, std::array{1.0, 14.0}), 0.5, 1e-15);
+  EXPECT_NEAR(calc_igd_plus(Points{{1, 2, 3}}, Points{{0, 0, 5}}, std::array{1.0, 1.0, 1.0}),
+              std::sqrt(5), 1e-15);
+  EXPECT_EQ(calc_igd_plus({}, front, kUnit), kInf);
+  EXPECT_EQ(calc_igd_plus(Points{{kInf, 0}}, front, kUnit), kInf);
+  EXPECT_THROW(calc_igd_plus(front, {}, kUnit), std::invalid_argument);
+  EXPECT_THROW(calc_igd_plus(front, front, std::array{1.0}), std::invalid_argument);
+  EXPECT_THROW(calc_igd_plus(front, front, std::array{1.0, 0.0}), std::invalid_argument);
+}
+
+// A set whose points another one dominates is never nearer to the reference.
+TEST(IgdPlus, NeverPrefersADominatedSet) {
+  RandomStream random("igd-plus");
+  constexpr std::array kExtent = {1.0, 2.0, 0.5};
+  const auto draw = [&](std::size_t count) {
+    Points points(count, std::vector<double>(3));
+    for (std::vector<double>& point : points) {
+      std::ranges::generate(point, [&] { return random.uniform(); });
+    }
+    return points;
+  };
+  for (int round = 0; round < 50; ++round) {
+    const Points reference = draw(7), better = draw(5);
+    Points worse = better;
+    for (std::vector<double>& point : worse) {
+      point[random.below(3)] += random.uniform();
+    }
+    EXPECT_GE(calc_igd_plus(worse, reference, kExtent), calc_igd_plus(better, reference, kExtent));
+  }
 }
 
 TEST(Hypervolume, DependsOnNoOrderOfPointsOrObjectives) {

@@ -101,6 +101,12 @@ export const kTerms: Term[] = [
       'The part of the space of objectives, up to a reference point, that is worse than at least one design of a front. A front is better if its hypervolume is larger.',
   },
   {
+    name: 'IGD+',
+    pattern: 'IGD\\+',
+    meaning:
+      'The inverted generational distance plus: how far a front is from the common front of all runs, on the average over that front. Only objectives that are worse count, in units of its extent. Smaller is better.',
+  },
+  {
     name: 'anytime area',
     pattern: 'anytime areas?',
     meaning:

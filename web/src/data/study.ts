@@ -116,7 +116,12 @@ export interface StudyFront {
   // One item per optimizer: the points that no point of their own replicate dominates (at most 200 of
   // each replicate), and, with two objectives, the areas that shares of the replicates attain (0.25,
   // 0.5 and 0.75). 9 significant digits.
-  optimizers: { points: { values: number[]; replicate: number }[]; attainment: { share: number; points: number[][] }[] }[];
+  // igd_plus is the median over the replicates; null without a front.
+  optimizers: {
+    points: { values: number[]; replicate: number }[];
+    igd_plus: number | null;
+    attainment: { share: number; points: number[][] }[];
+  }[];
 }
 
 export interface StudyOverall {

@@ -69,7 +69,8 @@ function draw_front(look: Look, scope: Scope, problem: StudyProblem, front: Stud
           '; ' +
           at(point.values)
             .map((value) => format_number(value))
-            .join(', '),
+            .join(', ') +
+          (front.optimizers[o].igd_plus === null ? '' : '; median IGD+ ' + format_number(front.optimizers[o].igd_plus as number, 3)),
         command: problem.results[o].cells.filter((cell) => cell.replicate === point.replicate)[0]?.command,
       })),
       ...make_symbol(look, style),
@@ -133,7 +134,7 @@ export function make_front(all: Scope): Figure | null {
       (objectives === 2
         ? 'The thick stepped line bounds the area that half of the replicates of an optimizer attain. It is a typical front, whereas the points mix lucky and unlucky runs. Thin lines are for other shares of the replicates. '
         : 'With more than two objectives the plane shows a projection: a point that looks dominated may not be dominated. ') +
-      'The cross is the reference point of the hypervolume, a tenth beyond the front of all runs together. Points far beyond it are not shown. ' +
+      'The cross is the reference point of the hypervolume, a tenth beyond the front of all runs together. Points far beyond it are not shown. A point also tells the median IGD+ of its optimizer, from the front of all runs together. ' +
       (scope.shown.length > kDrawnAtFirst ? 'The best ' + kDrawnAtFirst + ' optimizers are drawn at first. ' : '') +
       describe_size(scope),
     height: 420,
