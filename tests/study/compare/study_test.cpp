@@ -241,7 +241,7 @@ TEST_F(StudyTest, FrontsAreComparedByTheHypervolumeTheyMiss) {
   const auto tables = read_tree(temporary_ / "study" / "tables");
   EXPECT_TRUE(tables.contains("fronts.csv"));
   EXPECT_THAT(tables.at("indicators.csv"),
-              StartsWith("problem,optimizer,replicate,missed_hypervolume,igd_plus\nq2-pareto,"));
+              testing::StartsWith("problem,optimizer,replicate,missed_hypervolume,igd_plus\nq2-pareto,"));
   EXPECT_EQ(std::ranges::count(tables.at("indicators.csv"), '\n'), 1 + 2 * 3);
   for (const OptimizerResult& one : problem.optimizers) {
     ASSERT_EQ(one.igd_plus.size(), 3u);
