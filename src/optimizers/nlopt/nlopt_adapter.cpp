@@ -33,15 +33,10 @@ void write_gradient(const std::vector<std::vector<double>>& derivatives, std::si
 NloptAdapter::NloptAdapter(const NloptSettings& settings, Evaluator& evaluator)
     : settings_(settings), function_(evaluator) {
   if (settings.differences) {
-    const auto values_of = [this](const Score& score) {
-      std::vector<double> values = list_values(score);
-      if (score.status == EvaluationStatus::ok) {
-        return values;
-      }
-      failed_values_ = std::move(values);
-      return std::vector<double>{};
-    };
-    differenced_.emplace(evaluator, values_of, *settings.differences);
+    // A failure counts as its penalty here too, so that a failed start has slopes to leave it by.
+    differenced_.emplace(
+        evaluator, [this](const Score& score) { return list_values(score); },
+        *settings.differences);
   }
 }
 
@@ -135,7 +130,7 @@ void NloptAdapter::stop_solver() {
 NloptAdapter::Answer& NloptAdapter::evaluate_place(const std::vector<double>& coordinates,
                                                    bool with_derivatives) {
   const auto& place = differenced_->evaluate_place(coordinates, with_derivatives);
-  Answer& answer = remember(coordinates, place.values.empty() ? failed_values_ : place.values);
+  Answer& answer = remember(coordinates, place.values);
   answer.derivatives = place.derivatives;
   return answer;
 }

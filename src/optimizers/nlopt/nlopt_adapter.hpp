@@ -4,8 +4,7 @@
 //
 // NLopt gets finite numbers only. A failed evaluation answers with its penalty and with strongly
 // violated constraints. A point with a coordinate that is not finite (some algorithms ask for NaN)
-// is not evaluated; it gets the worst objective so far. Gradients are finite differences; those of a
-// failed point are 0.
+// is not evaluated; it gets the worst objective so far. Gradients are finite differences.
 #pragma once
 
 #include <array>
@@ -68,7 +67,6 @@ class NloptAdapter {
   const NloptSettings& settings_;
   ScalarFunction function_;
   std::optional<DifferencedFunction> differenced_;  // if NLopt gets gradients
-  std::vector<double> failed_values_;               // of the latest failed evaluation
   std::function<void()> stop_solver_;
   std::array<Answer, 8> answers_;  // the latest
   std::size_t next_answer_ = 0;

@@ -159,7 +159,7 @@ TEST(Nlopt, EveryGradientFreeAlgorithmOfTheLibraryHasARow) {
     // LN_AUGLAG, LN_AUGLAG_EQ, GN_MLSL, GN_MLSL_LDS: older names of AUGLAG and so on.
     count += name.starts_with("GN_") || name.starts_with("LN_") ? 1 : 0;
   }
-  EXPECT_EQ(make_nlopt_rows().size(), count);
+  EXPECT_EQ(make_nlopt_rows().size(), count + 1);  // slsqp gets its gradients by differences
 }
 
 // One evaluation serves objective and constraints.
@@ -178,9 +178,38 @@ TEST_P(NloptConstraints, AreRespectedAndCostNoEvaluations) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rows, NloptConstraints,
-                         testing::Values("nlopt:cobyla", "nlopt:isres", "nlopt:ags", "nlopt:auglag",
+                         testing::Values("nlopt:cobyla", "nlopt:slsqp", "nlopt:isres", "nlopt:ags", "nlopt:auglag",
                                          "nlopt:auglag_eq", "nlopt:orig_direct"),
                          [](const auto& parameters) { return parameters.param.substr(6); });
+
+// Every point of a difference is an evaluation: 4 variables take 4 or 8 points at a place.
+TEST(Nlopt, SlsqpCountsItsDifferencesAndIsExactOnAQuadraticFunction) {
+  const auto problem = make_analytic("constrained");
+  const MemoryEvaluator central = run_optimizer("nlopt:slsqp", *problem, {.budget = 1000});
+  EXPECT_NEAR(*central.best(), -44, 1e-5);
+  EXPECT_LT(central.trace().size(), 500u);
+  const MemoryEvaluator forward =
+      run_optimizer("nlopt:slsqp", *problem, {.budget = 1000}, 1, {"differences=forward"});
+  EXPECT_NEAR(*forward.best(), -44, 1e-3);
+  const auto count_first_place = [&](const MemoryEvaluator& evaluator) {
+    // The start, then the points that differ from it in one coordinate.
+    const Points points = asked_points(evaluator);
+    std::size_t count = 1;
+    while (count < points.size()) {
+      std::size_t changed = 0;
+      for (std::size_t i = 0; i < points[0].size(); ++i) {
+        changed += points[count][i] != points[0][i] ? 1 : 0;
+      }
+      if (changed != 1) {
+        break;
+      }
+      ++count;
+    }
+    return count;
+  };
+  EXPECT_EQ(count_first_place(central), 9u);
+  EXPECT_EQ(count_first_place(forward), 5u);
+}
 
 // They are told beforehand how many evaluations there will be, for their storage, and must not plan
 // by it.
@@ -209,6 +238,9 @@ TEST(Nlopt, EveryLocalOptimizerFitsEveryRowThatHasOne) {
   const auto problem = make_analytic("sphere", 3);
   for (const OptimizerRow& row : make_nlopt_rows()) {
     for (const OptionSpec& option : row.options) {
+      if (option.name != "local") {
+        continue;
+      }
       for (const std::string& choice : option.choices) {
         const MemoryEvaluator evaluator =
             run_optimizer(row.name, *problem, {.budget = 300}, 1, {"local=" + choice});
