@@ -97,6 +97,9 @@ std::string describe_limits(const ExcitationProblem& problem, const AssessedMoti
   if (config.floor_m) {
     text += fmt::format("  The arm stays {:.3g} m above the floor or more.\n", -motion.depth_m);
   }
+  if (config.clearance) {
+    text += fmt::format("  The links stay {:.3g} m away from obstacles or more.\n", motion.gap_m);
+  }
   return text;
 }
 

@@ -129,7 +129,9 @@ void load_excitation(const ConfigTable& table, LoadedProblem& loaded) {
   if (config.floor_m) {
     check_floor(its, kExcitationFloor, *config.floor_m, config.robot);
   }
-  name_robot_file(resolve_named(robot, kRobotUrdf, "robots"), [&] {
+  const std::filesystem::path urdf = resolve_named(robot, kRobotUrdf, "robots");
+  config.clearance = read_clearance(table, urdf, false, config.robot, loaded);
+  name_robot_file(urdf, [&] {
     check_limits_of(config.robot);
     loaded.problem = std::make_shared<ExcitationProblem>(std::move(config));
   });

@@ -1,4 +1,4 @@
-// Reads problems of the kind motion: [motion], its points, [[obstacle]] and [tubes].
+// Reads problems of the kind motion: [motion], its points and [tubes].
 
 #include <fmt/format.h>
 
@@ -19,8 +19,6 @@ namespace {
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr Range kLimitRange{.lower = 0, .upper = 1e9, .lower_open = true};
 constexpr Range kJointPlace{.lower = -1000, .upper = 1000};
-constexpr Range kCellPlace{.lower = -kFarthestPlace_m, .upper = kFarthestPlace_m};
-constexpr Range kSize_m{.lower = 0, .upper = kFarthestPlace_m, .lower_open = true};
 
 const Setting<std::string> kCurve{
     "curve", curve_kind_names, "cubic",
@@ -102,23 +100,6 @@ const SettingTable kMotionPointSettings{
     .key = "point",
     .is_array = true,
     .settings = {&kPointJoints, &kPointTool, &kPointToolRpy, &kPointFile, &kPointFree}};
-
-const Setting<std::string> kObstacleName{"name", kNoDefault, "name of the obstacle in messages"};
-const Setting<std::string> kObstacleKind{"kind", obstacle_kind_names, kNoDefault,
-                                         "its form; a cylinder stands upright"};
-const Setting<std::vector<double>> kObstacleCentre{
-    "centre_m", kCellPlace, kNoDefault, "of a sphere, box or cylinder: x, y and z in the world"};
-const Setting<double> kObstacleRadius{"radius_m", kSize_m, kNoDefault,
-                                      "of a sphere, capsule or cylinder"};
-const Setting<double> kObstacleHeight{"height_m", kSize_m, kNoDefault, "of a cylinder"};
-const Setting<std::vector<double>> kObstacleEdges{"edges_m", kSize_m, kNoDefault,
-                                                  "of a box: its three edges"};
-const Setting<std::vector<double>> kObstacleRpy{
-    "rpy_rad", kAngleRange, std::vector<double>{0, 0, 0}, "of a box: roll, pitch and yaw"};
-const Setting<std::vector<double>> kObstacleFrom{"from_m", kCellPlace, kNoDefault,
-                                                 "of a capsule: one end of its axis"};
-const Setting<std::vector<double>> kObstacleTo{"to_m", kCellPlace, kNoDefault,
-                                               "of a capsule: the other end"};
 
 const Setting<double> kYoungsModulus{"youngs_modulus_pa",
                                      {.lower = 1e6, .upper = 1e13},
@@ -318,14 +299,11 @@ void check_start(const std::vector<ConfigTable>& tables, const MotionConfig& con
     const Eigen::VectorXd& q = *config.points[k].q;
     const auto nearest = config.clearance->find_nearest(
         calc_link_poses(config.robot, {q.data(), static_cast<std::size_t>(q.size())}));
-    if (nearest.distance_m < config.least_clearance_m.value_or(0)) {
-      tables[k].refuse(
-          get_joints_key(tables[k]),
-          fmt::format(
-              "point {}: {} are {:.4g} m apart (negative: one inside the other), and {:g} m "
-              "are asked for; move the point or the obstacle",
-              k + 1, config.clearance->describe(nearest), nearest.distance_m,
-              config.least_clearance_m.value_or(0)));
+    const double least_m = config.least_clearance_m.value_or(0);
+    if (nearest.distance_m < least_m) {
+      tables[k].refuse(get_joints_key(tables[k]),
+                       fmt::format("point {}: {}; move the point or the obstacle", k + 1,
+                                   config.clearance->describe_gap(nearest, least_m)));
     }
   }
 }
@@ -391,43 +369,10 @@ const SettingTable kMotionSettings{
                  &kAccelerationLimits, &kJerkLimits, &kEffortLimits, &kEffortShareBounds,
                  &kToolSpeedLimit, &kLeastClearance, &kSelfClearance, &kPayloadMass, &kPayloadCom},
     .tables = {&kMotionPointSettings}};
-const SettingTable kObstacleSettings{
-    .key = "obstacle",
-    .is_array = true,
-    .settings = {&kObstacleName, &kObstacleKind, &kObstacleCentre, &kObstacleRadius,
-                 &kObstacleHeight, &kObstacleEdges, &kObstacleRpy, &kObstacleFrom, &kObstacleTo}};
 const SettingTable kTubeSettings{
     .key = "tubes",
     .settings = {&kYoungsModulus, &kTubeDensity, &kDiameters, &kWalls, &kLengthBounds,
                  &kDiameterBounds, &kWallBounds, &kDeflectionLimit}};
-
-std::vector<Obstacle> read_obstacles(const std::vector<ConfigTable>& tables) {
-  std::vector<Obstacle> obstacles;
-  for (const ConfigTable& table : tables) {
-    Obstacle obstacle;
-    obstacle.name = table.get_or(kObstacleName, fmt::format("obstacle {}", obstacles.size() + 1));
-    obstacle.kind = static_cast<ObstacleKind>(table.get_choice(kObstacleKind));
-    if (obstacle.kind == ObstacleKind::capsule) {
-      obstacle.capsule = {read_vector(table, kObstacleFrom, "x, y and z in metres"),
-                          read_vector(table, kObstacleTo, "x, y and z in metres"),
-                          table.get(kObstacleRadius)};
-    } else {
-      const Eigen::Vector3d centre_m = read_vector(table, kObstacleCentre, "x, y and z in metres");
-      obstacle.pose.translation() = centre_m;
-      if (obstacle.kind == ObstacleKind::sphere) {
-        obstacle.capsule = {centre_m, centre_m, table.get(kObstacleRadius)};
-      } else if (obstacle.kind == ObstacleKind::box) {
-        obstacle.half_m = read_vector(table, kObstacleEdges, "three edges in metres") / 2;
-        obstacle.pose.linear() = make_turn(read_vector(table, kObstacleRpy, "three angles in rad"));
-      } else {
-        const double radius_m = table.get(kObstacleRadius);
-        obstacle.half_m = {radius_m, radius_m, table.get(kObstacleHeight) / 2};
-      }
-    }
-    obstacles.push_back(std::move(obstacle));
-  }
-  return obstacles;
-}
 
 void load_motion(const ConfigTable& table, LoadedProblem& loaded) {
   MotionConfig config;
@@ -496,20 +441,11 @@ void load_motion(const ConfigTable& table, LoadedProblem& loaded) {
   if (table.has(kTubeSettings.key)) {
     read_tubes(table.get_table(kTubeSettings), config);
   }
-  std::vector<Obstacle> obstacles = read_obstacles(table.get_tables_or_empty(kObstacleSettings));
-  const bool self = its.get(kSelfClearance);
-  if (config.least_clearance_m && obstacles.empty() && !self) {
+  config.clearance = read_clearance(table, urdf, its.get(kSelfClearance), config.robot, loaded);
+  if (config.least_clearance_m && !config.clearance) {
     its.refuse(kLeastClearance,
                "there is nothing to be clear of; add an [[obstacle]], or set "
                "motion.self_clearance = true");
-  }
-  if (!obstacles.empty() || self) {
-    std::vector<std::string> notes;
-    auto capsules = fit_link_capsules(
-        config.robot, MeshFinder(urdf.parent_path(), config.robot.reading.packages), notes);
-    config.robot.notes.insert(config.robot.notes.end(), notes.begin(), notes.end());
-    config.clearance = std::make_shared<ArmClearance>(config.robot, std::move(capsules),
-                                                      std::move(obstacles), self);
   }
   read_motion_objective(table.get_table_or_empty(kObjectiveSettings), config);
   check_holding(points, config);

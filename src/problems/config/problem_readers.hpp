@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,7 +26,7 @@
 #include "problems/tracking/tracking_config.hpp"
 #include "sim/engines/engine_table.hpp"
 #include "sim/identification/fitted_plant.hpp"
-#include "sim/kinematics/obstacle.hpp"
+#include "sim/kinematics/arm_clearance.hpp"
 
 namespace armwright {
 
@@ -134,10 +135,25 @@ extern const SettingTable kExcitationSettings;
 // whose limits do not say what motions are allowed.
 void load_excitation(const ConfigTable& table, LoadedProblem& loaded);
 
-// motion_reader.cpp: [motion], [[obstacle]] and [tubes]: a motion that is planned
+// obstacle_reader.cpp: [[obstacle]]
+//
+// kind = "urdf" stands for all collision shapes of a file. A mesh counts as the capsule around its
+// vertices.
 
-extern const SettingTable kMotionSettings, kObstacleSettings, kTubeSettings;
-std::vector<Obstacle> read_obstacles(const std::vector<ConfigTable>& tables);
+extern const SettingTable kObstacleSettings;
+// Reads the obstacles of the problem's root table. Returns nothing if there are none and `self` is
+// false. Adds notes to the robot, which is read from `urdf`, and inputs to the problem. Throws
+// Error{bad_data} for a URDF or mesh that cannot be read.
+std::shared_ptr<const ArmClearance> read_clearance(const ConfigTable& table,
+                                                   const std::filesystem::path& urdf, bool self,
+                                                   RobotModel& robot, LoadedProblem& loaded);
+// Sets what config.task must keep clear of, and by how much. Refuses a home that is not clear.
+void read_task_clearance(const ConfigTable& table, const std::filesystem::path& urdf,
+                         TrackingConfig& config, LoadedProblem& loaded);
+
+// motion_reader.cpp: [motion] and [tubes]: a motion that is planned
+
+extern const SettingTable kMotionSettings, kTubeSettings;
 // Sets the problem, its single case and the hashes of its inputs. Throws Error{bad_data} if the arm
 // cannot reach a point.
 void load_motion(const ConfigTable& table, LoadedProblem& loaded);
@@ -156,10 +172,10 @@ PhysicsSettings read_physics(const ConfigTable& physics);
 extern const SettingTable kTaskSettings;
 extern const SettingTable kControlSettings;
 extern const SettingTable kWorkspaceSettings;
-extern const Setting<std::string> kTaskOrientation, kControlController;
-extern const Setting<bool> kTaskCountFirstPoint;
-extern const Setting<double> kControlPeriod, kTaskSpeed, kTaskDistanceLimit, kTaskFloor,
-    kWorkspaceRadius, kWorkspaceShortestMove;
+extern const Setting<std::string> kTaskOrientation, kTaskLimits, kControlController;
+extern const Setting<bool> kTaskCountFirstPoint, kTaskSelfClearance;
+extern const Setting<double> kTaskClearance, kControlPeriod, kTaskSpeed, kTaskDistanceLimit,
+    kTaskFloor, kWorkspaceRadius, kWorkspaceShortestMove;
 extern const Setting<std::vector<double>> kTaskHome, kTaskLoadCom, kTaskToolRpy, kTaskToolAxis,
     kWorkspaceCentre, kWorkspaceNormal;
 
@@ -237,6 +253,9 @@ std::optional<TestCase> read_path(const ConfigTable& table, const TrackingTask& 
 
 inline constexpr double kFarthestPlace_m = 100;  // as in files of test cases
 inline constexpr std::size_t kMostPathPoints = 1'000'000;
+// The limits of each coordinate of a place in the arm's cell, and of the size of a thing there, m.
+inline constexpr Range kCellPlace{.lower = -kFarthestPlace_m, .upper = kFarthestPlace_m};
+inline constexpr Range kSize_m{.lower = 0, .upper = kFarthestPlace_m, .lower_open = true};
 
 // Reads a path in CSV. Columns: x_m, y_m, z_m; optionally roll_rad, pitch_rad and yaw_rad, or qw,
 // qx, qy and qz; optionally time_s. With times the result is a continuous path with one point per
@@ -265,8 +284,7 @@ extern const Setting<std::vector<std::string>> kObjectiveQuantities;
 // names that are not there, or twice, and a front of less than two.
 std::vector<WeightedQuantity> read_quantities(const ConfigTable& table,
                                               const std::vector<std::string>& names,
-                                              const std::vector<std::string>& known,
-                                              bool is_front);
+                                              const std::vector<std::string>& known, bool is_front);
 // Reads the objective, without the quantities of a front.
 TrackingObjective read_objective(const ConfigTable& table);
 // Reads the quantities of a front. The variables and the requirements must be there.

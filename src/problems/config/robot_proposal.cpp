@@ -88,11 +88,12 @@ WorkspaceProposal find_place(const ConfigTable& task_table, TrackingConfig& conf
   if (!found) {
     refuse_proposal(
         config.robot,
-        fmt::format("no place was found {}where its tool can move along straight lines with "
+        fmt::format("no place was found {}{}where its tool can move along straight lines with "
                     "task.orientation = \"{}\", within all joint ranges and off singularities; set "
                     "another task.orientation, or workspace.centre_m, workspace.radius_m and "
                     "task.home yourself",
                     task.floor_m ? fmt::format("above task.floor_m = {:g} ", *task.floor_m) : "",
+                    task.clearance ? "clear of obstacles " : "",
                     wanted ? tool_orientation_names()[static_cast<std::size_t>(*wanted)] : "free"));
   }
   if (!found->floor_m) {

@@ -34,6 +34,19 @@ const Setting<double> kTaskFloor{
     "height in the world below which no link may be; path checks and proposals keep to it "
     "(default: "
     "no floor; a proposed workspace has one at 0 if the arm can work above it)"};
+const Setting<std::string> kTaskLimits{
+    "limits", limit_policy_names, "ignore",
+    "what happens if a path exceeds joint ranges or speeds, or meets singularities, the floor or "
+    "obstacles: nothing, a "
+    "warning or an error"};
+const Setting<double> kTaskClearance{
+    "clearance_m",
+    {.lower = 0, .upper = 10},
+    kNoDefault,
+    "least distance of the links from every [[obstacle]], and from each other with self_clearance; "
+    "path checks and proposals keep to it (default: 0)"};
+const Setting<bool> kTaskSelfClearance{
+    "self_clearance", false, "whether links must stay clear of each other and of the base too"};
 const Setting<std::vector<double>> kTaskHome{
     "home",
     {.lower = -1000, .upper = 1000},
@@ -110,10 +123,6 @@ const Setting<std::string> kTaskSolver{
     "solver", numeric_solver_names, "lanes",
     "how numeric inverse kinematics is computed; lanes: many times as fast; scalar: to the last "
     "bit as in version 1.0, whose recorded configurations lack this key"};
-const Setting<std::string> kTaskLimits{
-    "limits", limit_policy_names, "ignore",
-    "what happens if a path exceeds joint ranges or speeds, or meets singularities: nothing, a "
-    "warning or an error"};
 const Setting<double> kTaskOrientationArm{
     "orientation_arm_m",
     {.lower = 1e-3, .upper = 100},
@@ -187,11 +196,13 @@ std::optional<LoadBody> read_load_body(const ConfigTable& table, double load_kg)
 
 const SettingTable kTaskSettings{
     .key = "task",
-    .settings = {&kTaskSignal, &kTaskSpeed, &kTaskDistanceLimit, &kTaskTrapezoidAcceleration,
-                 &kTaskRest, &kTaskCountFirstPoint, &kTaskIkBug, &kTaskLoad, &kTaskLoadCom,
-                 &kTaskLoadInertia, &kTaskKinematics, &kTaskSolver, &kTaskLimits, &kTaskFloor,
-                 &kTaskOrientation, &kTaskToolRpy, &kTaskToolAxis, &kTaskOrientationArm,
-                 &kTaskHome}};
+    .settings = {
+        &kTaskSignal,      &kTaskSpeed,           &kTaskDistanceLimit, &kTaskTrapezoidAcceleration,
+        &kTaskRest,        &kTaskCountFirstPoint, &kTaskIkBug,         &kTaskLoad,
+        &kTaskLoadCom,     &kTaskLoadInertia,     &kTaskKinematics,    &kTaskSolver,
+        &kTaskLimits,      &kTaskFloor,           &kTaskClearance,     &kTaskSelfClearance,
+        &kTaskOrientation, &kTaskToolRpy,         &kTaskToolAxis,      &kTaskOrientationArm,
+        &kTaskHome}};
 const SettingTable kControlSettings{
     .key = "control",
     .settings = {&kControlPeriod, &kControlController, &kControlStart, &kControlInterface,

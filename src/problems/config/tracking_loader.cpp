@@ -440,6 +440,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   if (config.task.floor_m) {
     check_floor(task, kTaskFloor, *config.task.floor_m, config.robot);
   }
+  read_task_clearance(table, urdf, config, loaded);
   config.workspace = read_workspace(table.get_table_or_empty(kWorkspaceSettings));
   name_robot_file(urdf, [&] { read_path_and_proposal(table, config, loaded); });
   read_drives(control, config.task);  // they need the final control period

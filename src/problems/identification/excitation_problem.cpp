@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "problems/interface/add_outcome.hpp"
+#include "sim/kinematics/kinematics.hpp"
 
 namespace armwright {
 namespace {
@@ -61,7 +62,7 @@ ExcitationProblem::ExcitationProblem(ExcitationConfig config) : config_(std::mov
   if (config_.floor_m) {
     kinematics_ =
         std::make_unique<NumericKinematics>(config_.robot, ToolTask{}, std::vector<double>{}, true);
-    clearance_ = std::make_unique<FloorClearance>(config_.robot, *kinematics_, *config_.floor_m);
+    floor_ = std::make_unique<FloorClearance>(config_.robot, *kinematics_, *config_.floor_m);
   }
   description_.name = config_.name;
   description_.summary = config_.summary;
@@ -82,6 +83,9 @@ ExcitationProblem::ExcitationProblem(ExcitationConfig config) : config_(std::mov
   }
   if (config_.floor_m) {
     description_.constraints.push_back({"floor", ""});
+  }
+  if (config_.clearance) {
+    description_.constraints.push_back({"obstacles", ""});
   }
   description_.metrics = {{"condition number", ""}};
   make_variables();
@@ -238,9 +242,16 @@ AssessedMotion ExcitationProblem::assess(std::span<const double> x, const Shape&
   }
   assessed.depth_m = -arm_length_m_;
   std::vector<double> q(robot.joint_count());
-  for (Index k = 0; clearance_ && k < samples; ++k) {
+  assessed.gap_m = arm_length_m_;
+  for (Index k = 0; (floor_ || config_.clearance) && k < samples; ++k) {
     Eigen::RowVectorXd::Map(q.data(), n) = motion.positions.row(k);
-    assessed.depth_m = std::max(assessed.depth_m, clearance_->find_lowest(q).excess_m);
+    if (floor_) {
+      assessed.depth_m = std::max(assessed.depth_m, floor_->find_lowest(q).excess_m);
+    }
+    if (config_.clearance) {
+      const auto nearest = config_.clearance->find_nearest(calc_link_poses(robot, q));
+      assessed.gap_m = std::min(assessed.gap_m, nearest.distance_m);
+    }
   }
   // A^T A of the combinations that can be told.
   const Eigen::VectorXd weights =
@@ -271,6 +282,9 @@ std::vector<double> ExcitationProblem::calc_constraints(const AssessedMotion& mo
   }
   if (config_.floor_m) {
     values.push_back(motion.depth_m / arm_length_m_ + 1 - reserve);
+  }
+  if (config_.clearance) {
+    values.push_back(-motion.gap_m / arm_length_m_ + 1 - reserve);
   }
   return values;
 }
@@ -360,8 +374,9 @@ void ExcitationProblem::set_start() {
         fmt::format("the limits leave no posture from which a motion could begin: in the best "
                     "of {} random postures, {} is {:.3g} times what is allowed; {}",
                     kPostures, sanitize(description_.constraints[worst].name), 1 + least,
-                    description_.constraints[worst].name == "floor"
-                        ? "lower excitation.floor_m"
+                    description_.constraints[worst].name == "floor" ? "lower excitation.floor_m"
+                    : description_.constraints[worst].name == "obstacles"
+                        ? "move the obstacles"
                         : "raise excitation.effort_share, or check the effort limits and "
                           "the masses of the robot and its payload"));
   }

@@ -18,7 +18,8 @@
 // multiplied by a basis of the others, found with the same random states.
 //
 // Constraints keep each joint within shares of its range, speed and effort limit, and the arm above a
-// floor: g = share / limit - 1, for a floor depth / the arm's length. Training samples the motion
+// floor and clear of obstacles: g = share / limit - 1, for a floor depth / the arm's length, for
+// obstacles -gap / the arm's length. Training samples the motion
 // coarsely and demands kReserve more than is asked for. Elastic joints count as rigid.
 #pragma once
 
@@ -31,6 +32,7 @@
 
 #include "problems/interface/problem.hpp"
 #include "sim/identification/plant_model.hpp"
+#include "sim/kinematics/arm_clearance.hpp"
 #include "sim/kinematics/floor_clearance.hpp"
 
 namespace armwright {
@@ -52,6 +54,7 @@ struct ExcitationConfig {
   double speed_share = 0.8, effort_share = 0.8;
   std::vector<double> acceleration_limits;  // rad/s^2 or m/s^2, one per joint; empty: none
   std::optional<double> floor_m;
+  std::shared_ptr<const ArmClearance> clearance;  // null: there is nothing to stay clear of
 };
 
 // A motion, sampled evenly from its beginning to its end.
@@ -63,6 +66,7 @@ struct AssessedMotion {
   // without limits.
   Eigen::VectorXd positions, speeds, accelerations, efforts_share;
   double depth_m = 0;        // of the arm's lowest place below the floor; negative: it clears it
+  double gap_m = 0;          // the least distance of links from obstacles, if there are some
   Eigen::MatrixXd jacobian;  // of the efforts, not divided; one row per effort
   double condition = 0;
   double log_det = 0;  // log(det(A^T A)) / n
@@ -135,7 +139,7 @@ class ExcitationProblem final : public Problem {
   Shape training_shape_;
   double arm_length_m_ = 1;
   std::unique_ptr<NumericKinematics> kinematics_;  // these two if there is a floor
-  std::unique_ptr<FloorClearance> clearance_;
+  std::unique_ptr<FloorClearance> floor_;
   ProblemDescription description_;
 };
 

@@ -44,7 +44,11 @@ RobotModel TrackingInputs::make_robot(const ArmDesign& design) const {
 }
 
 TrackingTask TrackingInputs::make_task(const ArmDesign& design) const {
-  return armwright::make_task(config_.task, design);
+  TrackingTask task = armwright::make_task(config_.task, design);
+  if (task.clearance && is_stretched(design)) {
+    task.clearance = make_clearance(*task.clearance, config_.robot, design);
+  }
+  return task;
 }
 
 std::shared_ptr<const TrackingSetup> TrackingInputs::get_setup(const ArmDesign& design) const {

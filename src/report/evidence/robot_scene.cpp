@@ -11,6 +11,7 @@
 
 #include "base/text.hpp"
 #include "report/evidence/page_json.hpp"
+#include "sim/kinematics/obstacle.hpp"
 #include "sim/robot/mesh_file.hpp"
 #include "sim/robot/mesh_finder.hpp"
 
@@ -21,6 +22,7 @@ using nlohmann::json;
 
 constexpr std::size_t kMostTriangles = 200'000;
 const Eigen::Vector4d kLoadColour(0.16, 0.47, 0.71, 1.0);  // blue; no shipped arm has it
+const Eigen::Vector4d kObstacleColour(0.84, 0.37, 0, 0.6);
 
 json make_numbers(const Eigen::VectorXd& values) {
   return std::vector<double>(values.begin(), values.end());
@@ -141,6 +143,28 @@ json make_shapes(const std::vector<VisualShape>& visuals, Meshes& meshes) {
   return shapes;
 }
 
+void add_shapes(const Obstacle& obstacle, json& shapes) {
+  const auto add = [&](const VisualShape& shape) {
+    shapes.push_back(make_shape(shape, std::nullopt));
+  };
+  if (obstacle.kind == ObstacleKind::box || obstacle.kind == ObstacleKind::cylinder) {
+    const bool is_box = obstacle.kind == ObstacleKind::box;
+    add({.kind = is_box ? ShapeKind::box : ShapeKind::cylinder,
+         .size_m = is_box ? Eigen::Vector3d(2 * obstacle.half_m)
+                          : Eigen::Vector3d(obstacle.half_m.x(), 2 * obstacle.half_m.z(), 0),
+         .mesh_file = "",
+         .pose = obstacle.pose,
+         .rgba = kObstacleColour});
+    return;
+  }
+  const Capsule& its = obstacle.capsule;
+  add(make_ball(its.from_m, its.radius_m, kObstacleColour));
+  if (its.from_m != its.to_m) {
+    add(make_cylinder(its.from_m, its.to_m, its.radius_m, kObstacleColour));
+    add(make_ball(its.to_m, its.radius_m, kObstacleColour));
+  }
+}
+
 }  // namespace
 
 json make_robot(const RobotModel& model, const TrackingTask& task,
@@ -183,6 +207,9 @@ json make_robot(const RobotModel& model, const TrackingTask& task,
     VisualShape load = loaded.links.back().visuals.back();
     load.rgba = kLoadColour;
     bodies.back()["shapes"].push_back(make_shape(load, std::nullopt));
+  }
+  for (std::size_t i = 0; task.clearance && i < task.clearance->obstacles().size(); ++i) {
+    add_shapes(task.clearance->obstacles()[i], bodies.front()["shapes"]);
   }
   json joints = json::array();
   for (const Joint& joint : model.joints) {

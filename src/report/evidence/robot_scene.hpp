@@ -12,7 +12,8 @@
 namespace armwright {
 
 // Returns Robot of web/src/data.ts. `model` is the arm without its load. The load of `task`, above
-// 0 kg, is a shape on the last body in its own colour (add_load()). Meshes are STL, OBJ or Collada
+// 0 kg, is a shape on the last body in its own colour (add_load()); its obstacles are shapes of the
+// base, which does not move. Meshes are STL, OBJ or Collada
 // files, which MeshFinder finds from `urdf_folder`; limits are 64 MiB per file and 200 000
 // triangles per robot. A mesh that cannot be read is left out. A body whose shapes are all missing
 // gets plain shapes, and so do all bodies of a robot without any shapes. `notes` gets a whole

@@ -44,32 +44,6 @@ GivenMotion make_planned_motion(const AssessedPlan& plan) {
   return motion;
 }
 
-// Obstacles belong to the base, which does not move.
-void add_obstacles(const ArmClearance& clearance, RobotModel& robot) {
-  const Eigen::Vector4d colour(0.84, 0.37, 0, 0.6);
-  std::vector<VisualShape>& shapes = robot.base.visuals;
-  for (const Obstacle& obstacle : clearance.obstacles()) {
-    if (obstacle.kind == ObstacleKind::box) {
-      shapes.push_back({.kind = ShapeKind::box,
-                        .size_m = 2 * obstacle.half_m,
-                        .mesh_file = "",
-                        .pose = obstacle.pose,
-                        .rgba = colour});
-    } else if (obstacle.kind == ObstacleKind::cylinder) {
-      const Eigen::Vector3d half = obstacle.half_m.z() * Eigen::Vector3d::UnitZ();
-      const Eigen::Vector3d centre = obstacle.centre_m();
-      shapes.push_back(make_cylinder(centre - half, centre + half, obstacle.half_m.x(), colour));
-    } else {
-      const Capsule& its = obstacle.capsule;
-      shapes.push_back(make_ball(its.from_m, its.radius_m, colour));
-      if (its.from_m != its.to_m) {
-        shapes.push_back(make_cylinder(its.from_m, its.to_m, its.radius_m, colour));
-        shapes.push_back(make_ball(its.to_m, its.radius_m, colour));
-      }
-    }
-  }
-}
-
 }  // namespace
 
 void add_planned_motion(const RecordedRun& run, json& page, std::vector<std::string>& notes) {
@@ -87,7 +61,7 @@ void add_planned_motion(const RecordedRun& run, json& page, std::vector<std::str
   const JointLimits& limits = problem->config().limits;
   json lines = json::object();
   json efforts = json::array();
-  RobotModel robot = *plan->robot;
+  const RobotModel& robot = *plan->robot;
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
     const std::string& name = robot.joints[i].name;
     for (const auto& [what, values] :
@@ -100,10 +74,8 @@ void add_planned_motion(const RecordedRun& run, json& page, std::vector<std::str
     efforts.push_back({finite_or_null(-limits.effort[i]), finite_or_null(limits.effort[i])});
   }
   page["record_limits"] = lines;
-  if (problem->config().clearance) {
-    add_obstacles(*problem->config().clearance, robot);
-  }
   TrackingTask task;
+  task.clearance = problem->config().clearance;
   task.control_period_s = kReplayPeriod_s;
   const std::size_t index =
       add_robot(robot, task, run.find_urdf().parent_path(), page["robots"], notes);

@@ -24,6 +24,16 @@ constexpr int kSides = 16;
 constexpr std::size_t kPostures = 200;
 constexpr double kSmallestAxis_m = 1e-9;
 
+void add_vertices(const VisualShape& shape, const std::filesystem::path& file,
+                  std::vector<Vector3d>& points) {
+  const TriangleMesh mesh = read_mesh(file);
+  for (std::size_t i = 0; i + 2 < mesh.positions.size(); i += 3) {
+    points.push_back(shape.pose * Vector3d(mesh.positions[i] * shape.size_m.x(),
+                                           mesh.positions[i + 1] * shape.size_m.y(),
+                                           mesh.positions[i + 2] * shape.size_m.z()));
+  }
+}
+
 void add_corners(const VisualShape& shape, MeshFinder& meshes, std::vector<Vector3d>& points) {
   const auto add = [&](double x, double y, double z) {
     points.push_back(shape.pose * Vector3d(x, y, z));
@@ -52,11 +62,7 @@ void add_corners(const VisualShape& shape, MeshFinder& meshes, std::vector<Vecto
     case ShapeKind::mesh:
       if (const auto file = meshes.find(shape.mesh_file)) {
         try {
-          const TriangleMesh mesh = read_mesh(*file);
-          for (std::size_t i = 0; i + 2 < mesh.positions.size(); i += 3) {
-            add(mesh.positions[i] * shape.size_m.x(), mesh.positions[i + 1] * shape.size_m.y(),
-                mesh.positions[i + 2] * shape.size_m.z());
-          }
+          add_vertices(shape, *file, points);
         } catch (const std::exception&) {  // a note says that the link has no shapes
         }
       }
@@ -131,6 +137,35 @@ Capsule fit_capsule(std::span<const Vector3d> points_m, std::span<const Vector3d
   return best;
 }
 
+Obstacle make_obstacle(const VisualShape& shape, std::string name,
+                       const std::filesystem::path& mesh) {
+  Obstacle obstacle;
+  obstacle.name = std::move(name);
+  obstacle.pose = shape.pose;
+  switch (shape.kind) {
+    case ShapeKind::box:
+      obstacle.kind = ObstacleKind::box;
+      obstacle.half_m = shape.size_m / 2;
+      break;
+    case ShapeKind::cylinder:
+      obstacle.kind = ObstacleKind::cylinder;
+      obstacle.half_m = {shape.size_m.x(), shape.size_m.x(), shape.size_m.y() / 2};
+      break;
+    case ShapeKind::sphere:
+      obstacle.kind = ObstacleKind::sphere;
+      obstacle.capsule = {shape.pose.translation(), shape.pose.translation(), shape.size_m.x()};
+      break;
+    case ShapeKind::mesh: {
+      std::vector<Vector3d> points;
+      add_vertices(shape, mesh, points);
+      obstacle.kind = ObstacleKind::capsule;
+      obstacle.capsule = fit_capsule(points, {});
+      break;
+    }
+  }
+  return obstacle;
+}
+
 std::vector<std::optional<Capsule>> fit_link_capsules(const RobotModel& robot, MeshFinder meshes,
                                                       std::vector<std::string>& notes) {
   std::vector<std::optional<Capsule>> capsules;
@@ -173,6 +208,12 @@ ArmClearance::ArmClearance(const RobotModel& robot, std::vector<std::optional<Ca
   if (self) {
     find_pairs(robot);
   }
+}
+
+ArmClearance ArmClearance::with_capsules(std::vector<std::optional<Capsule>> capsules) const {
+  ArmClearance other = *this;
+  other.capsules_ = std::move(capsules);
+  return other;
 }
 
 void ArmClearance::find_pairs(const RobotModel& robot) {
@@ -244,6 +285,12 @@ std::string ArmClearance::describe(const Nearest& nearest) const {
                            sanitize(obstacles_[nearest.other].name))
              : fmt::format("the links '{}' and '{}'", sanitize(names_[nearest.body]),
                            sanitize(names_[nearest.other]));
+}
+
+std::string ArmClearance::describe_gap(const Nearest& nearest, double least_m) const {
+  return fmt::format(
+      "{} are {:.4g} m apart (negative: one inside the other), and {:g} m are asked for",
+      describe(nearest), nearest.distance_m, least_m);
 }
 
 }  // namespace armwright

@@ -29,6 +29,10 @@ namespace armwright {
 // Returns a capsule that holds all points (m). `axes` are the directions to try.
 Capsule fit_capsule(std::span<const Eigen::Vector3d> points_m,
                     std::span<const Eigen::Vector3d> axes);
+// Returns the obstacle that a shape in the world is. `mesh` is the file of a mesh, whose vertices the
+// fitted capsule holds. Throws what read_mesh() throws.
+Obstacle make_obstacle(const VisualShape& shape, std::string name,
+                       const std::filesystem::path& mesh = {});
 // Returns one capsule per body, the base first, in the frame of its link; nothing for a base without
 // shapes. Meshes that cannot be found or read do not count; if a link then has no shapes left,
 // `notes` gets a sentence.
@@ -41,6 +45,9 @@ class ArmClearance {
   ArmClearance(const RobotModel& robot, std::vector<std::optional<Capsule>> capsules,
                std::vector<Obstacle> obstacles, bool self);
 
+  // Returns the clearance of the same arm with other capsules, one per body.
+  ArmClearance with_capsules(std::vector<std::optional<Capsule>> capsules) const;
+
   struct Nearest {
     double distance_m = 0;    // signed
     std::size_t body = 0;     // 0: the base; 1: the first link
@@ -52,6 +59,8 @@ class ArmClearance {
   Nearest find_nearest(std::span<const Eigen::Isometry3d> poses) const;
   // Returns the names of the pair: "link_3 and the obstacle 'post'".
   std::string describe(const Nearest& nearest) const;
+  // Returns a sentence about a distance below `least_m`, without a full stop.
+  std::string describe_gap(const Nearest& nearest, double least_m) const;
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
   const std::vector<std::optional<Capsule>>& capsules() const { return capsules_; }
 

@@ -14,6 +14,7 @@
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "sim/kinematics/floor_clearance.hpp"
+#include "sim/kinematics/kinematics.hpp"
 #include "sim/proposal/drive_proposal.hpp"
 #include "sim/tracking/path_check.hpp"
 
@@ -113,6 +114,29 @@ Eigen::Vector2d find_front(const NumericKinematics& kinematics, const RobotModel
                                                              : Eigen::Vector2d::UnitX();
 }
 
+// What the arm must keep clear of: the task's floor and obstacles. Keeps references.
+class Cell {
+ public:
+  Cell(const RobotModel& robot, const NumericKinematics& kinematics, const TrackingTask& task)
+      : robot_(robot), task_(task) {
+    if (task.floor_m) {
+      floor_.emplace(robot, kinematics, *task.floor_m);
+    }
+  }
+
+  bool is_clear(std::span<const double> q) const {
+    return (!floor_ || floor_->find_lowest(q).excess_m <= 0) &&
+           (!task_.clearance ||
+            task_.clearance->find_nearest(calc_link_poses(robot_, q)).distance_m >=
+                task_.clearance_m);
+  }
+
+ private:
+  const RobotModel& robot_;
+  const TrackingTask& task_;
+  std::optional<FloorClearance> floor_;
+};
+
 // The search for the largest workspace of a task whose tool.orientation is set.
 class Search {
  public:
@@ -123,12 +147,9 @@ class Search {
         kinematics_(robot, task.tool, {}, true, task.solver),
         resting_(task.load_kg > 0 ? add_load(robot, task.load_kg, task.load_body) : robot,
                  task.physics),
+        cell_(robot, kinematics_, task),
         length_m_(calc_arm_length_m(robot)),
-        first_m_(robot.joints.front().origin.translation()) {
-    if (task.floor_m) {
-      clearance_.emplace(robot, kinematics_, *task.floor_m);
-    }
-  }
+        first_m_(robot.joints.front().origin.translation()) {}
 
   // Returns the largest workspace that is found, the tool pointing down or in any direction.
   std::optional<WorkspaceProposal> find(bool points_down);
@@ -147,7 +168,7 @@ class Search {
   WorkspaceSphere sphere_;
   NumericKinematics kinematics_;
   RestingArm resting_;
-  std::optional<FloorClearance> clearance_;
+  Cell cell_;
   double length_m_;
   Eigen::Vector3d first_m_;
 };
@@ -206,9 +227,9 @@ bool is_too_coupled(RestingArm& resting, std::span<const double> q) {
 
 // Returns whether the arm can follow straight moves through the points of the cases; checks
 // coarsely spaced points.
-bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot,
-                const FloorClearance* clearance, RestingArm& resting, const WorkspaceSphere& sphere,
-                const Eigen::Matrix3d& turn, std::vector<double> q) {
+bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot, const Cell& cell,
+                RestingArm& resting, const WorkspaceSphere& sphere, const Eigen::Matrix3d& turn,
+                std::vector<double> q) {
   const std::size_t n = q.size();
   if (!kinematics.find({sphere.centre_m, turn}, q)) {
     return false;
@@ -229,8 +250,8 @@ bool can_follow(const NumericKinematics& kinematics, const RobotModel& robot,
         const Eigen::Vector3d at_m =
             its.points_m[k - 1] + (static_cast<double>(step) / steps) * way_m;
         if (!kinematics.follow({at_m, turn}, wish, q) || touches_an_end(kinematics, robot, q) ||
-            (clearance != nullptr && clearance->find_lowest(q).excess_m > 0) ||
-            is_too_coupled(resting, q) || kinematics.calc_dexterity(q) < kSafeDexterity) {
+            !cell.is_clear(q) || is_too_coupled(resting, q) ||
+            kinematics.calc_dexterity(q) < kSafeDexterity) {
           return false;
         }
       }
@@ -308,8 +329,7 @@ std::optional<WorkspaceProposal> Search::try_homes(const Postures& homes, double
          radius_m *= kRadiusStep) {
       check_reading();
       set_radius(sphere, radius_m);
-      if (can_follow(from_home, robot_, clearance_ ? &*clearance_ : nullptr, resting_, sphere,
-                     centre.turn, home)) {
+      if (can_follow(from_home, robot_, cell_, resting_, sphere, centre.turn, home)) {
         best = WorkspaceProposal{.home = home,
                                  .centre = centre,
                                  .sphere = sphere,
@@ -337,8 +357,7 @@ std::optional<WorkspaceProposal> Search::find(bool points_down) {
     // Less the more the other joints move when one is driven, if that limits its damping.
     const double ease = calc_ease(kinematics_, robot_, q) *
                         std::min(1.0, most_coupling / resting_.calc_coupling(q));
-    if (ease <= 0 || (clearance_ && clearance_->find_lowest(q).excess_m > 0) ||
-        resting_.find_hardest(q).share > kMostHeldAtHome) {
+    if (ease <= 0 || !cell_.is_clear(q) || resting_.find_hardest(q).share > kMostHeldAtHome) {
       continue;
     }
     const Eigen::Vector2d way_m = (kinematics_.calc_pose(q).position_m - first_m_).head<2>();
@@ -376,14 +395,15 @@ void Search::check_holding() {
   RestingArm::Hardest easiest;
   easiest.share = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& q : draw_postures()) {
-    if (!clearance_ || clearance_->find_lowest(q).excess_m <= 0) {
+    if (cell_.is_clear(q)) {
       const RestingArm::Hardest hardest = resting_.find_hardest(q);
       easiest = hardest.share < easiest.share ? hardest : easiest;
     }
   }
   if (std::isfinite(easiest.share) && easiest.share > kMostHeldAtHome) {
     refuse_to_hold(robot_, easiest,
-                   fmt::format("in the easiest of {} postures above the floor", kPostures));
+                   fmt::format("in the easiest of {} postures above the floor{}", kPostures,
+                               task_.clearance ? " and clear of obstacles" : ""));
   }
 }
 

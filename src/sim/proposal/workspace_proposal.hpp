@@ -7,16 +7,17 @@
 //                direction of a tool that points down; the same, as the tool points at home; none.
 //                Needs six joints or five that control it
 //   home         one of 2000 random postures, in which the tool is turned down if it is to point
-//                down. Only postures are tried that clear the floor and that the motors hold with
-//                85 % of their effort limits; first those in front of the arm, and of these the ones
-//                farthest from singularities and range ends. Taken is the one around whose tip the
-//                largest sphere fits. The front is where the tip is on the average over all
-//                postures, or x if that is nowhere
+//                down. Only postures are tried that clear the floor and obstacles and that the
+//                motors hold with 85 % of their effort limits; first those in front of the arm, and
+//                of these the ones farthest from singularities and range ends. Taken is the one
+//                around whose tip the largest sphere fits. The front is where the tip is on the
+//                average over all postures, or x if that is nowhere
 //   workspace    the sphere around the tip at home (a disc for arms that move in a plane), above
 //                the floor and beside the arm's own base. On the straight moves of generated cases
 //                the joints keep a distance from the ends of their ranges, the arm keeps away from
-//                singularities, the links clear the floor, and the motors hold the arm with 90 % of
-//                their limits. Collisions between links are not checked.
+//                singularities, the links clear the floor and the task's obstacles, and the motors
+//                hold the arm with 90 % of their limits. Collisions between links are checked only
+//                if the task's clearance has them.
 #pragma once
 
 #include <optional>
@@ -56,8 +57,8 @@ struct WorkspaceProposal {
   bool points_down = false;  // the tool does at home, and its orientation is tracked
   std::optional<double> floor_m;
 };
-// Returns a proposal for a task. Uses `points` of `sphere`, and the task's floor and tool.axis;
-// tool.turn need not be set. A task without floor gets one at height 0 if the arm stands above it
+// Returns a proposal for a task. Uses `points` of `sphere`, and the task's floor, clearance and
+// tool.axis; tool.turn need not be set. A task without floor gets one at height 0 if the arm stands above it
 // and can work there. `orientation` is the one to track; nothing: the first possible one.
 // Returns nothing if no place is found where the tool can move. Throws Error{bad_data} if the
 // orientation is not possible, if the tip moves neither in space nor in a plane, and if the motors

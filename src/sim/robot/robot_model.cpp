@@ -116,11 +116,23 @@ bool is_mjcf(std::string_view xml) {
   return xml.starts_with(kRoot) && xml.find_first_of(" \t\r\n/>", kRoot.size()) == kRoot.size();
 }
 
-RobotModel load_urdf(const std::filesystem::path& file, const RobotOptions& options) {
+namespace {
+
+std::string read_urdf(const std::filesystem::path& file) {
   if (file.extension() == ".xacro") {
     throw Error(ErrorKind::bad_data, fmt::format("{}: {}", file.string(), kXacroAdvice));
   }
-  return parse_urdf(read_file(file, kUrdfLimit_bytes), file.string(), options);
+  return read_file(file, kUrdfLimit_bytes);
+}
+
+}  // namespace
+
+RobotModel load_urdf(const std::filesystem::path& file, const RobotOptions& options) {
+  return parse_urdf(read_urdf(file), file.string(), options);
+}
+
+std::vector<CollisionShape> load_collisions(const std::filesystem::path& file) {
+  return parse_collisions(read_urdf(file), file.string());
 }
 
 RobotModel parse_urdf(std::string_view xml, const std::string& name, const RobotOptions& options) {

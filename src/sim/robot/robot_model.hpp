@@ -223,6 +223,18 @@ class RobotOptionError final : public Error {
 RobotModel load_urdf(const std::filesystem::path& file, const RobotOptions& options = {});
 RobotModel parse_urdf(std::string_view xml, const std::string& name,
                       const RobotOptions& options = {});
+// One collision shape of a URDF. Its pose is in the root link's frame, with every joint at 0.
+struct CollisionShape {
+  std::string link;
+  int line = 0;
+  VisualShape shape;
+};
+// Return all collision shapes of a URDF, links in the file's order. The file may be a scene without
+// any moving joint. Throw Error{bad_data} "FILE:LINE: what is wrong, what is allowed" for what
+// parse_urdf() refuses of links, joints and visual shapes, and for shapes without size.
+// load_collisions() throws Error{io} if the file cannot be read.
+std::vector<CollisionShape> load_collisions(const std::filesystem::path& file);
+std::vector<CollisionShape> parse_collisions(std::string_view xml, const std::string& name);
 // Returns whether the root element of the text is <mujoco>.
 bool is_mjcf(std::string_view xml);
 

@@ -119,6 +119,9 @@ void add_choice(const UrdfChain& chain, RobotModel& model);
 // body that carries it: 0 is the base, i the link that joint i - 1 of the model moves.
 std::string describe_held(const RobotModel& model, const std::string& joint,
                           const std::string& held_at, double mass_kg, std::size_t carrier);
+// Returns the root. Checks that the links form a tree.
+const UrdfLink& find_root(const std::vector<UrdfLink>& links, const std::vector<UrdfJoint>& joints,
+                          const std::string& name);
 // Returns the chain that `options` selects. Checks that the links form a tree with one root. Throws
 // RobotOptionError as load_urdf() does, also if no joint between base and tip can move.
 UrdfChain choose_chain(const std::vector<UrdfLink>& links, const std::vector<UrdfJoint>& joints,

@@ -334,6 +334,11 @@ std::string describe_held(const RobotModel& model, const std::string& joint,
       carrier == 0 ? "the fixed base" : fmt::format("link '{}'", model.links[carrier - 1].name));
 }
 
+const UrdfLink& find_root(const std::vector<UrdfLink>& links, const std::vector<UrdfJoint>& joints,
+                          const std::string& name) {
+  return Tree(links, joints, name).root();
+}
+
 UrdfChain choose_chain(const std::vector<UrdfLink>& links, const std::vector<UrdfJoint>& joints,
                        const RobotOptions& options, const std::string& name) {
   const Tree tree(links, joints, name);

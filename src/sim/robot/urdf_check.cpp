@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "base/text.hpp"
@@ -189,26 +190,87 @@ void check_version(const XMLElement& robot, const UrdfXml& xml) {
   }
 }
 
-}  // namespace
-
-CheckedUrdf check_urdf(std::string_view xml_text, const std::string& name,
-                       const RobotOptions& options, UrdfFaults& faults) {
+// Parses the text into `document` and returns its <robot>, whose name and version are checked.
+const XMLElement& parse_robot(std::string_view xml_text, const std::string& name, UrdfXml& xml,
+                              tinyxml2::XMLDocument& document) {
   scan_urdf(xml_text, name);
-  tinyxml2::XMLDocument document;
   if (document.Parse(xml_text.data(), xml_text.size()) != tinyxml2::XML_SUCCESS) {
     fail_urdf(name, std::max(1, document.ErrorLineNum()),
               fmt::format("is not well-formed XML: {}", explain(document)));
   }
-  UrdfXml xml(name);
   const XMLElement& robot = find_robot(document, xml, name);
   xml.check_names(robot,
                   {"link", "joint", "material", "transmission", "gazebo", "sensor", "ros2_control"},
                   {"name", "version"});
-  CheckedUrdf checked;
-  checked.name = xml.get_text(robot, "name");
+  xml.get_text(robot, "name");
   if (robot.Attribute("version") != nullptr) {
     check_version(robot, xml);
   }
+  return robot;
+}
+
+}  // namespace
+
+std::vector<CollisionShape> parse_collisions(std::string_view xml_text, const std::string& name) {
+  tinyxml2::XMLDocument document;
+  UrdfXml xml(name);
+  const XMLElement& robot = parse_robot(xml_text, name, xml, document);
+  UrdfNumbers numbers;
+  add_numbers(robot, numbers);
+  const Index index(robot, xml, name, numbers);
+  std::map<std::string, std::vector<std::size_t>> below;  // the joints of each parent link
+  std::vector<Eigen::Isometry3d> origins;
+  UrdfFaults faults(name);
+  for (const XMLElement* e = robot.FirstChildElement("joint"); e != nullptr;
+       e = e->NextSiblingElement("joint")) {
+    const UrdfJoint& joint = index.joints[origins.size()];
+    xml.set_context(fmt::format("joint '{}'", joint.name));
+    below[joint.parent].push_back(origins.size());
+    Eigen::Isometry3d& origin = origins.emplace_back(Eigen::Isometry3d::Identity());
+    faults.attempt([&] { origin = read_origin(*e, xml); });
+  }
+  std::map<std::string, Eigen::Isometry3d> poses;
+  std::vector<std::string> open = {find_root(index.links, index.joints, name).name};
+  poses[open.front()] = Eigen::Isometry3d::Identity();
+  while (!open.empty()) {
+    const std::string link = std::move(open.back());
+    open.pop_back();
+    for (const std::size_t joint : below[link]) {
+      const std::string& child = index.joints[joint].child;
+      poses[child] = poses.at(link) * origins[joint];
+      open.push_back(child);
+    }
+  }
+  std::vector<CollisionShape> collisions;
+  std::size_t number = 0;
+  for (const XMLElement* e = robot.FirstChildElement("link"); e != nullptr;
+       e = e->NextSiblingElement("link")) {
+    const std::string& link = index.links[number++].name;
+    xml.set_context(fmt::format("link '{}'", link));
+    for (const XMLElement* its = e->FirstChildElement("collision"); its != nullptr;
+         its = its->NextSiblingElement("collision")) {
+      faults.attempt([&] {
+        xml.check_names(*its, {"origin", "geometry"}, {"name"});
+        VisualShape shape = read_geometry(*its, xml);
+        if (has_no_size(shape)) {
+          xml.fail(*its, "the <collision> has a size of 0; give it a size or leave it out");
+        }
+        shape.pose = poses.at(link) * shape.pose;
+        collisions.push_back({link, its->GetLineNum(), std::move(shape)});
+      });
+    }
+  }
+  faults.throw_if_any();
+  return collisions;
+}
+
+CheckedUrdf check_urdf(std::string_view xml_text, const std::string& name,
+                       const RobotOptions& options, UrdfFaults& faults) {
+  tinyxml2::XMLDocument document;
+  UrdfXml xml(name);
+  const XMLElement& robot = parse_robot(xml_text, name, xml, document);
+  CheckedUrdf checked;
+  checked.name = robot.Attribute("name");
   UrdfNumbers numbers;
   add_numbers(robot, numbers);
   VisualChecker visuals(robot, xml, numbers, checked.repairs);

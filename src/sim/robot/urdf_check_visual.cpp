@@ -1,4 +1,4 @@
-// Reads what links look like, and leaves out what cannot be shown.
+// Reads the shapes of links, and leaves out visual ones that cannot be shown.
 
 #include <fmt/format.h>
 
@@ -16,14 +16,65 @@ namespace {
 
 const std::vector<std::string> kShapes{"box", "cylinder", "sphere", "mesh"};
 
+void read_shape(const XMLElement& element, const UrdfXml& xml, const char* holder,
+                VisualShape& shape) {
+  const std::string kind = element.Name();
+  if (kind == "box") {
+    xml.check_names(element, {}, {"size"});
+    const std::vector<double> size = xml.read_numbers(element, "size", 3);
+    if (std::ranges::min(size) < 0) {
+      xml.fail(element, fmt::format("<box>: size is '{}'; all three edges must be > 0",
+                                    shorten(element.Attribute("size"))));
+    }
+    shape.kind = ShapeKind::box;
+    shape.size_m = Eigen::Vector3d(size[0], size[1], size[2]);
+  } else if (kind == "cylinder") {
+    xml.check_names(element, {}, {"radius", "length"});
+    shape.kind = ShapeKind::cylinder;
+    const double radius = xml.read_not_negative(element, "radius");
+    shape.size_m = Eigen::Vector3d(radius, xml.read_not_negative(element, "length"), 0);
+  } else if (kind == "sphere") {
+    xml.check_names(element, {}, {"radius"});
+    shape.kind = ShapeKind::sphere;
+    shape.size_m = Eigen::Vector3d(xml.read_not_negative(element, "radius"), 0, 0);
+  } else if (kind == "mesh") {
+    xml.check_names(element, {}, {"filename", "scale"});
+    shape.kind = ShapeKind::mesh;
+    shape.mesh_file = xml.get_text(element, "filename");
+    const std::vector<double> scale = xml.read_numbers(element, "scale", 3, {1, 1, 1});
+    shape.size_m = Eigen::Vector3d(scale[0], scale[1], scale[2]);
+  } else {
+    xml.fail(element, describe_unknown("shape", kind, kShapes) +
+                          (kind == "capsule"
+                               ? fmt::format(" (write a capsule as three <{}>, a cylinder and a "
+                                             "sphere at each end)",
+                                             holder)
+                               : ""));
+  }
+}
+
+}  // namespace
+
 bool has_no_size(const VisualShape& shape) {
   const Eigen::Index count = shape.kind == ShapeKind::box        ? 3
                              : shape.kind == ShapeKind::cylinder ? 2
                                                                  : 1;
-  return shape.size_m.head(count).minCoeff() == 0;
+  return shape.kind != ShapeKind::mesh && shape.size_m.head(count).minCoeff() == 0;
 }
 
-}  // namespace
+VisualShape read_geometry(const XMLElement& element, const UrdfXml& xml) {
+  VisualShape shape;
+  shape.pose = read_origin(element, xml);
+  const std::string hint = fmt::format("a {} needs one", element.Name());
+  const XMLElement& geometry = xml.get_only(element, "geometry", hint.c_str());
+  const XMLElement* child = geometry.FirstChildElement();
+  if (child == nullptr || child->NextSiblingElement() != nullptr) {
+    xml.fail(geometry, fmt::format("<geometry> must hold exactly one of {}", join(kShapes, ", ")));
+  }
+  xml.check_names(geometry, kShapes, {});
+  read_shape(*child, xml, element.Name(), shape);
+  return shape;
+}
 
 VisualChecker::VisualChecker(const XMLElement& robot, UrdfXml& xml, const UrdfNumbers& numbers,
                              UrdfRepairs& repairs)
@@ -79,8 +130,9 @@ void VisualChecker::read(const XMLElement& link, const std::string& link_name, U
        visual = visual->NextSiblingElement("visual")) {
     const std::vector<UrdfEdit> removed{{numbers_.at(visual), UrdfEdit::Kind::remove}};
     try {
-      VisualShape shape = read_visual(*visual);
-      if (shape.kind != ShapeKind::mesh && has_no_size(shape)) {
+      xml_.check_names(*visual, {"origin", "geometry", "material"}, {"name"});
+      VisualShape shape = read_geometry(*visual, xml_);
+      if (has_no_size(shape)) {
         repairs_.add("a <visual> of size 0 is left out",
                      fmt::format("'{}' (line {})", link_name, visual->GetLineNum()), removed);
         continue;
@@ -92,54 +144,6 @@ void VisualChecker::read(const XMLElement& link, const std::string& link_name, U
       repairs_.add("a <visual> that cannot be shown is left out",
                    fmt::format("'{}' ({})", link_name, body.unshown), removed);
     }
-  }
-}
-
-VisualShape VisualChecker::read_visual(const XMLElement& element) const {
-  xml_.check_names(element, {"origin", "geometry", "material"}, {"name"});
-  VisualShape shape;
-  shape.pose = read_origin(element, xml_);
-  const XMLElement& geometry = xml_.get_only(element, "geometry", "a visual needs one");
-  const XMLElement* child = geometry.FirstChildElement();
-  if (child == nullptr || child->NextSiblingElement() != nullptr) {
-    xml_.fail(geometry, fmt::format("<geometry> must hold exactly one of {}", join(kShapes, ", ")));
-  }
-  xml_.check_names(geometry, kShapes, {});
-  read_shape(*child, shape);
-  return shape;
-}
-
-void VisualChecker::read_shape(const XMLElement& element, VisualShape& shape) const {
-  const std::string kind = element.Name();
-  if (kind == "box") {
-    xml_.check_names(element, {}, {"size"});
-    const std::vector<double> size = xml_.read_numbers(element, "size", 3);
-    if (std::ranges::min(size) < 0) {
-      xml_.fail(element, fmt::format("<box>: size is '{}'; all three edges must be > 0",
-                                     shorten(element.Attribute("size"))));
-    }
-    shape.kind = ShapeKind::box;
-    shape.size_m = Eigen::Vector3d(size[0], size[1], size[2]);
-  } else if (kind == "cylinder") {
-    xml_.check_names(element, {}, {"radius", "length"});
-    shape.kind = ShapeKind::cylinder;
-    const double radius = xml_.read_not_negative(element, "radius");
-    shape.size_m = Eigen::Vector3d(radius, xml_.read_not_negative(element, "length"), 0);
-  } else if (kind == "sphere") {
-    xml_.check_names(element, {}, {"radius"});
-    shape.kind = ShapeKind::sphere;
-    shape.size_m = Eigen::Vector3d(xml_.read_not_negative(element, "radius"), 0, 0);
-  } else if (kind == "mesh") {
-    xml_.check_names(element, {}, {"filename", "scale"});
-    shape.kind = ShapeKind::mesh;
-    shape.mesh_file = xml_.get_text(element, "filename");
-    const std::vector<double> scale = xml_.read_numbers(element, "scale", 3, {1, 1, 1});
-    shape.size_m = Eigen::Vector3d(scale[0], scale[1], scale[2]);
-  } else {
-    xml_.fail(element, describe_unknown("shape", kind, kShapes) +
-                           (kind == "capsule" ? " (write a capsule as three <visual>, a cylinder "
-                                                "and a sphere at each end)"
-                                              : ""));
   }
 }
 

@@ -69,6 +69,10 @@ class UrdfXml {
 
 // Returns the pose of an element's <origin>, or the identity if it has none.
 Eigen::Isometry3d read_origin(const tinyxml2::XMLElement& parent, const UrdfXml& xml);
+// Returns the pose and the <geometry> of a <visual> or <collision>.
+VisualShape read_geometry(const tinyxml2::XMLElement& element, const UrdfXml& xml);
+// Returns whether a box, cylinder or sphere has an edge, a radius or a length of 0.
+bool has_no_size(const VisualShape& shape);
 
 // The numbers of the elements of a file (UrdfEdit).
 using UrdfNumbers = std::map<const tinyxml2::XMLElement*, std::size_t>;
@@ -86,8 +90,6 @@ class VisualChecker {
  private:
   void collect_colors(const tinyxml2::XMLElement& holder);
   std::vector<double> read_rgba(const tinyxml2::XMLElement& material) const;
-  VisualShape read_visual(const tinyxml2::XMLElement& element) const;
-  void read_shape(const tinyxml2::XMLElement& element, VisualShape& shape) const;
   void read_color(const tinyxml2::XMLElement& visual, const std::string& link_name,
                   VisualShape& shape);
   bool is_usable(const tinyxml2::XMLElement& material) const;

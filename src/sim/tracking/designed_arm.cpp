@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -39,6 +42,14 @@ void stretch_visual(VisualShape& visual, const Eigen::Matrix3d& map) {
   visual.pose.translation() = map * visual.pose.translation();
 }
 
+// Returns the map A of a link's points (designed_arm.hpp). `direction` is d.
+Eigen::Matrix3d make_stretch(const Eigen::Vector3d& direction, double length_scale,
+                             double section_scale) {
+  const double across = std::sqrt(section_scale);
+  return across * Eigen::Matrix3d::Identity() +
+         (length_scale - across) * (direction * direction.transpose());
+}
+
 }  // namespace
 
 RobotModel stretch_link(RobotModel model, std::size_t link, double length_scale,
@@ -64,9 +75,7 @@ RobotModel stretch_link(RobotModel model, std::size_t link, double length_scale,
                             is_last ? "the tip" : "the next joint"));
   }
   const Eigen::Vector3d direction = end.translation() / length_m;
-  const double across = std::sqrt(section_scale);
-  const Eigen::Matrix3d map = across * Eigen::Matrix3d::Identity() +
-                              (length_scale - across) * (direction * direction.transpose());
+  const Eigen::Matrix3d map = make_stretch(direction, length_scale, section_scale);
   Link& stretched = model.links[link];
   stretched.inertial = map_linearly(stretched.inertial, map, length_scale * section_scale);
   for (VisualShape& visual : stretched.visuals) {
@@ -96,6 +105,27 @@ RobotModel make_robot(const RobotModel& nominal, const ArmDesign& design,
 TrackingTask make_task(TrackingTask nominal, const ArmDesign& design) {
   nominal.speed_m_per_s = design.speed_m_per_s.value_or(nominal.speed_m_per_s);
   return nominal;
+}
+
+std::shared_ptr<const ArmClearance> make_clearance(const ArmClearance& nominal,
+                                                   const RobotModel& robot,
+                                                   const ArmDesign& design) {
+  std::vector<std::optional<Capsule>> capsules = nominal.capsules();
+  for (std::size_t i = 0; i < design.joints.size(); ++i) {
+    const JointDrive& its = design.joints[i];
+    std::optional<Capsule>& capsule = capsules[i + 1];
+    if (!capsule || (its.length_scale == 1 && its.section_scale == 1)) {
+      continue;
+    }
+    const bool is_last = i + 1 == robot.joint_count();
+    const Eigen::Vector3d end =
+        (is_last ? robot.tip_pose : robot.joints[i + 1].origin).translation();
+    const Eigen::Matrix3d map = make_stretch(end.normalized(), its.length_scale, its.section_scale);
+    // The map makes an ellipsoid of a ball; its longest half axis is the radius.
+    capsule = Capsule{map * capsule->from_m, map * capsule->to_m,
+                      capsule->radius_m * std::max(its.length_scale, std::sqrt(its.section_scale))};
+  }
+  return std::make_shared<const ArmClearance>(nominal.with_capsules(std::move(capsules)));
 }
 
 bool is_stretched(const ArmDesign& design) {

@@ -10,12 +10,18 @@
 //   K               becomes L S A K A', and the inertia is tr(K) 1 - K
 // The next joint, and everything that it carries, moves with the link's end and is not turned.
 //
+// The capsules that stand for links (arm_clearance.hpp) get ends A r and the radius max(L, sqrt(S))
+// times as large, so that they still hold the shapes.
+//
 // Motors. A motor of torque per mass k weighs tau / k, with tau the larger of its joint's two
 // effort limits. It is a point mass at its joint's origin, carried by the link before. The motor of
 // joint 1 stands on the base and moves nothing. Motors are added to the masses that the robot's
 // file has.
 #pragma once
 
+#include <memory>
+
+#include "sim/kinematics/arm_clearance.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/tracking/design.hpp"
 #include "sim/tracking/task.hpp"
@@ -34,6 +40,11 @@ RobotModel make_robot(const RobotModel& nominal, const ArmDesign& design,
                       double torque_per_mass_n_m_per_kg);
 // Returns the task with the design's speed, if the design has one.
 TrackingTask make_task(TrackingTask nominal, const ArmDesign& design);
+
+// Returns the clearance of the design's arm. `nominal` is that of the nominal one, `robot`.
+std::shared_ptr<const ArmClearance> make_clearance(const ArmClearance& nominal,
+                                                   const RobotModel& robot,
+                                                   const ArmDesign& design);
 
 // Returns whether the design changes the size of any link.
 bool is_stretched(const ArmDesign& design);

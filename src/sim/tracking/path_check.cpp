@@ -8,6 +8,7 @@
 
 #include "base/text.hpp"
 #include "sim/kinematics/floor_clearance.hpp"
+#include "sim/kinematics/kinematics.hpp"
 
 namespace armwright {
 namespace {
@@ -43,6 +44,28 @@ double calc_excess(const Joint& joint, bool wrapped, double& position) {
   return std::max(joint.lower - position, position - joint.upper);
 }
 
+// Returns the fault of a posture: its links' least distance, if that is below the task's.
+std::optional<PathFault> find_contact(const TrackingSetup& setup, std::span<const double> q) {
+  const ArmClearance& clearance = *setup.task().clearance;
+  const RobotModel& robot = setup.robot();
+  const ArmClearance::Nearest nearest = clearance.find_nearest(calc_link_poses(robot, q));
+  if (nearest.distance_m > setup.task().clearance_m - kRounding) {
+    return std::nullopt;
+  }
+  PathFault fault;
+  fault.kind = PathFault::Kind::obstacle;
+  fault.joint = (nearest.is_obstacle ? nearest.body : nearest.other) - 1;
+  fault.value = nearest.distance_m;
+  fault.limit = setup.task().clearance_m;
+  const std::string& body =
+      nearest.body == 0 ? robot.base.name : robot.links[nearest.body - 1].name;
+  fault.other =
+      nearest.is_obstacle
+          ? fmt::format("the obstacle '{}'", sanitize(clearance.obstacles()[nearest.other].name))
+          : fmt::format("the link '{}'", sanitize(body));
+  return fault;
+}
+
 }  // namespace
 
 std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const TargetTable& table) {
@@ -50,7 +73,17 @@ std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const Target
   const double period_s = setup.task().control_period_s;
   const auto kinematics = setup.get_kinematics();
   std::vector<Worst> positions(table.joints), speeds(table.joints);
-  Worst singular, low;
+  Worst singular, low, near;
+  const auto look_around = [&](std::span<const double> q, std::size_t point, double time_s) {
+    if (auto contact = find_contact(setup, q)) {
+      contact->point = point;
+      contact->time_s = time_s;
+      near.consider(*contact, contact->limit - contact->value);
+    }
+  };
+  if (setup.task().clearance) {
+    look_around(table.start_positions, 1, 0);
+  }
   std::optional<FloorClearance> clearance;
   if (setup.task().floor_m) {
     clearance.emplace(robot, *kinematics, *setup.task().floor_m);
@@ -90,6 +123,9 @@ std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const Target
           low.consider(fault, lowest.excess_m);
         }
       }
+      if (setup.task().clearance && !std::ranges::equal(before, q)) {
+        look_around(q, k + 1, (step + 1) * period_s);
+      }
       if (step % kStepsBetweenDecompositions == 0 && !std::ranges::equal(before, q)) {
         fault.kind = PathFault::Kind::singular;
         fault.value = kinematics->calc_dexterity(q);
@@ -111,7 +147,7 @@ std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const Target
       }
     }
   }
-  for (const Worst& worst : {singular, low}) {
+  for (const Worst& worst : {singular, low, near}) {
     if (worst.fault) {
       faults.push_back(*worst.fault);
     }
@@ -141,6 +177,18 @@ std::string describe(const PathFault& fault, const RobotModel& robot) {
                          "least {:.4g} m are needed above task.floor_m",
                          fault.joint + 1, sanitize(robot.links[fault.joint].name), fault.value,
                          fault.time_s, fault.limit);
+    case PathFault::Kind::obstacle: {
+      const std::string link =
+          fmt::format("link {} ('{}')", fault.joint + 1, sanitize(robot.links[fault.joint].name));
+      const std::string needed =
+          fault.limit > 0
+              ? fmt::format(", at least {:.4g} m between them are needed (task.clearance_m)",
+                            fault.limit)
+              : "";
+      return where + fmt::format("{} would be {:.4g} m {} {} (at {:.2f} s){}", link,
+                                 std::abs(fault.value), fault.value < 0 ? "inside" : "away from",
+                                 fault.other, fault.time_s, needed);
+    }
     case PathFault::Kind::singular:
       break;
   }

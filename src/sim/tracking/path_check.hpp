@@ -9,6 +9,9 @@
 //             hardly moves.
 //   floor     if the task has a floor: the end of a link is too low (floor_clearance.hpp). The fault
 //             names the joint that moves the link.
+//   obstacle  if the task has obstacles, or links that must keep clear of each other: two of them
+//             are nearer than the task's clearance_m (arm_clearance.hpp). The fault names the joint
+//             that moves the link. The first posture counts too, at 0 s.
 #pragma once
 
 #include <string>
@@ -21,17 +24,18 @@ namespace armwright {
 inline constexpr double kSingularDexterity = 0.01;
 
 struct PathFault {
-  enum class Kind { position, speed, singular, floor };
+  enum class Kind { position, speed, singular, floor, obstacle };
   Kind kind = Kind::position;
   std::size_t joint = 0;
   std::size_t point = 0;  // the worst fault lies on the way to this point, counted from 1
   double time_s = 0;
-  double value = 0;  // rad, rad/s, m, m/s, the ratio of singular values, or a height in m
+  double value = 0;  // rad, rad/s, m, m/s, the ratio of singular values, a height or distance in m
   double limit = 0;
+  std::string other = {};  // what the link comes too close to: "the obstacle 'post'"
 };
 
 // Returns the worst fault of every kind and joint: by joints, positions before speeds, then the
-// singularity, and the floor last. Empty: the path has no fault. The table must be complete.
+// singularity, the floor and the obstacle. Empty: the path has no fault. The table must be complete.
 std::vector<PathFault> find_path_faults(const TrackingSetup& setup, const TargetTable& table);
 
 // Returns a text such as "on the way to point 3: joint 2 ('shoulder') would have to move at

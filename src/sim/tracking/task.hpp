@@ -2,11 +2,13 @@
 // holds everything that is the same for every design and every test case.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/controllers/law_types.hpp"
+#include "sim/kinematics/arm_clearance.hpp"
 #include "sim/kinematics/numeric_kinematics.hpp"
 #include "sim/kinematics/targets.hpp"
 #include "sim/kinematics/tool_task.hpp"
@@ -30,8 +32,8 @@ struct PhysicsSettings {
 enum class KinematicsChoice { automatic, palletiser, numeric };
 const std::vector<std::string>& kinematics_names();  // in the order of the enum
 
-// How a target's path has to respect the joints' ranges, the joints' speed limits, singularities
-// and the floor (path_check.hpp).
+// How a target's path has to respect the joints' ranges, the joints' speed limits, singularities,
+// the floor and obstacles (path_check.hpp).
 //   ignore   the path may violate any of them, as in the thesis
 //   warn     inverse kinematics keeps the joints in their ranges
 //   enforce  likewise; a case whose path violates any of them is not simulated
@@ -63,6 +65,9 @@ struct TrackingTask {
   LimitPolicy limits = LimitPolicy::ignore;
   // The height in the world below which no link may be (floor_clearance.hpp). Nothing: no floor.
   std::optional<double> floor_m;
+  // What the links must keep clear of, by `clearance_m`. Null: of nothing.
+  std::shared_ptr<const ArmClearance> clearance;
+  double clearance_m = 0;
   ToolTask tool;
   // Joint positions (rad or m) from which numeric kinematics search. Empty: middles of the ranges.
   std::vector<double> home;

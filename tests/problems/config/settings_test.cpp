@@ -171,6 +171,8 @@ Specimen make_specimen(const std::string& path) {
       replace("kind = \"sphere\"", "kind = \"box\"\nedges_m = [1, 1, 1]");
     } else if (path == "obstacle[].height_m") {
       replace("kind = \"sphere\"", "kind = \"cylinder\"");
+    } else if (path == "obstacle[].file" || path == "obstacle[].position_m") {
+      replace("kind = \"sphere\"", "kind = \"urdf\"\nfile = \"planar2\"");
     } else if (path == "obstacle[].from_m" || path == "obstacle[].to_m") {
       replace("kind = \"sphere\"", "kind = \"capsule\"\nfrom_m = [5, 5, 5]\nto_m = [6, 6, 6]");
     }

@@ -6,6 +6,7 @@
 
 #include "problems/identification/excitation_problem.hpp"
 #include "problems/problem_folder.hpp"
+#include "sim/kinematics/kinematics.hpp"
 
 namespace armwright {
 namespace {
@@ -179,6 +180,29 @@ TEST(Excitation, RepeatsItself) {
   const ExcitationProblem condition(other);
   EXPECT_DOUBLE_EQ(evaluate(condition, x).objectives[0], std::log10(evaluate(first, x).metrics[0]));
   EXPECT_NE(evaluate(condition, x).objectives, evaluate(first, x).objectives);
+}
+
+TEST(Excitation, KeepsClearOfObstacles) {
+  const std::string ball = "obstacle=[{kind=\"sphere\",centre_m=[1.2,0.4,1],radius_m=0.2}]";
+  const auto load = [](const std::vector<std::string>& overrides) {
+    const LoadedProblem loaded = load_problem("excite", overrides);
+    return std::dynamic_pointer_cast<const ExcitationProblem>(loaded.problem);
+  };
+  const auto none = load({}), near = load({ball});
+  const std::vector<double> x = list_starts(*near);
+  EXPECT_EQ(near->description().constraints.back().name, "obstacles");
+  EXPECT_TRUE(is_feasible(evaluate(*near, x)));
+  const AssessedMotion motion = near->assess_finely(x);
+  EXPECT_GT(motion.gap_m, 0);
+  double least_m = 100;
+  for (Eigen::Index k = 0; k < motion.times_s.size(); ++k) {
+    const Eigen::VectorXd q = motion.motion.positions.row(k);
+    const auto poses =
+        calc_link_poses(near->config().robot, {q.data(), static_cast<std::size_t>(q.size())});
+    least_m = std::min(least_m, near->config().clearance->find_nearest(poses).distance_m);
+  }
+  EXPECT_EQ(motion.gap_m, least_m);
+  EXPECT_EQ(none->description().constraints.size() + 1, near->description().constraints.size());
 }
 
 // What load_problem() says of a problem with these settings.

@@ -31,7 +31,7 @@ double find_point_distance(const Vector3d& p, const Obstacle& obstacle) {
     return outside > 0 ? std::sqrt(outside) : inside;
   }
   if (obstacle.kind == ObstacleKind::cylinder) {
-    const Vector3d seen = p - obstacle.pose.translation();
+    const Vector3d seen = obstacle.pose.inverse() * p;
     const double beside = std::hypot(seen.x(), seen.y()) - obstacle.half_m.x();
     const double above = std::abs(seen.z()) - obstacle.half_m.z();
     return beside <= 0 || above <= 0 ? std::max(beside, above) : std::hypot(beside, above);
@@ -59,7 +59,7 @@ TEST(ObstacleDistance, IsThatOfDenseSamples) {
       obstacle.capsule.radius_m = 0.2;
       obstacle.pose.translation() = draw_vector(random, 1);
       obstacle.half_m = {0.3, kind == ObstacleKind::box ? 0.2 : 0.3, 0.5};
-      if (kind == ObstacleKind::box) {
+      if (kind == ObstacleKind::box || kind == ObstacleKind::cylinder) {
         obstacle.pose.linear() =
             Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), draw_vector(random, 1))
                 .toRotationMatrix();
