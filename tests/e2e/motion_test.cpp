@@ -40,7 +40,8 @@ class Motion : public testing::Test {
 };
 
 TEST_F(Motion, IsPlannedExportedReadStrictlyAndFollowed) {
-  const Outcome planned = run({"optimize", "gasparetto", "--budget", "400", "--out", "plan", "--quiet"});
+  const Outcome planned =
+      run({"optimize", "gasparetto", "--budget", "400", "--out", "plan", "--quiet"});
   ASSERT_EQ(planned.exit_code, 0) << planned.err;
   const json result = json::parse(read_text(folder_.path() / "plan" / "result.json"));
   const json read =
@@ -63,13 +64,12 @@ TEST_F(Motion, IsPlannedExportedReadStrictlyAndFollowed) {
 
 TEST_F(Motion, AFrontIsTheSameBitByBitWithAnObstacleOutOfReach) {
   const std::string clear = "motion.self_clearance=true";
-  const std::string none =
-      find_front("saravanan-puma", "none",
-                 {"--optimizer", "mode", "--set", "obstacle=[]", "--set", clear});
-  const std::string far = find_front(
-      "saravanan-puma", "far",
-      {"--optimizer", "mode", "--set", clear, "--set",
-       "obstacle=[{name=\"far\", kind=\"box\", centre_m=[9,9,9], edges_m=[1,1,1]}]"});
+  const std::string none = find_front(
+      "saravanan-puma", "none", {"--optimizer", "mode", "--set", "obstacle=[]", "--set", clear});
+  const std::string far =
+      find_front("saravanan-puma", "far",
+                 {"--optimizer", "mode", "--set", clear, "--set",
+                  "obstacle=[{name=\"far\", kind=\"box\", centre_m=[9,9,9], edges_m=[1,1,1]}]"});
   EXPECT_EQ(none, far);
   EXPECT_GT(std::count(none.begin(), none.end(), '\n'), 3);
 }

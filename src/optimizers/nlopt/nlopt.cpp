@@ -84,9 +84,9 @@ class Nlopt : public Optimizer {
 };
 
 std::vector<OptionSpec> make_options(const NloptAlgorithm& algorithm) {
-  const bool takes_steps =
-      (algorithm.kind == NloptKind::local && !algorithm.takes_gradients) ||
-      algorithm.kind == NloptKind::starting || algorithm.kind == NloptKind::wrapping;
+  const bool takes_steps = (algorithm.kind == NloptKind::local && !algorithm.takes_gradients) ||
+                           algorithm.kind == NloptKind::starting ||
+                           algorithm.kind == NloptKind::wrapping;
   const bool descends = algorithm.kind == NloptKind::local || algorithm.kind == NloptKind::wrapping;
   std::vector<OptionSpec> options;
   if (algorithm.kind == NloptKind::starting) {

@@ -106,9 +106,9 @@ NloptAdapter::Answer* NloptAdapter::evaluate(std::span<const double> coordinates
   }
   nan_sequence_ = 0;
   try {
-    return differenced_ ? &evaluate_place({coordinates.begin(), coordinates.end()},
-                                          with_derivatives)
-                        : &remember(coordinates, list_values(function_.evaluate_point(point)));
+    return differenced_
+               ? &evaluate_place({coordinates.begin(), coordinates.end()}, with_derivatives)
+               : &remember(coordinates, list_values(function_.evaluate_point(point)));
   } catch (const EvaluatorStopped&) {
     has_stopped_ = true;
   } catch (...) {

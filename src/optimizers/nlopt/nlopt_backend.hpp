@@ -23,11 +23,11 @@ struct NloptSettings {
   std::string local = {};          // the same of its local optimizer; empty: it has none
   bool takes_constraints = false;  // NLopt gets the constraints separately
   std::optional<DifferenceSettings> differences = {};  // NLopt gets gradients
-  bool is_paced = false;           // NLopt gets the number of evaluations, to allocate its storage
-  double initial_step = 0;         // share of the box; 0: NLopt chooses
-  double xtol_rel = 0;             // ends when a step is smaller than this times |u|; 0: never
-  double ftol_rel = 0;             // ends when a change is smaller than this times |f|; 0: never
-  std::int64_t population = 0;     // 0: NLopt chooses
+  bool is_paced = false;        // NLopt gets the number of evaluations, to allocate its storage
+  double initial_step = 0;      // share of the box; 0: NLopt chooses
+  double xtol_rel = 0;          // ends when a step is smaller than this times |u|; 0: never
+  double ftol_rel = 0;          // ends when a change is smaller than this times |f|; 0: never
+  std::int64_t population = 0;  // 0: NLopt chooses
   std::int64_t restarts = 0;
   bool tolerances_are_local = false;  // the tolerances apply only to runs of the local optimizer
   double constraint_weight = 0;

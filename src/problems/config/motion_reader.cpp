@@ -71,7 +71,8 @@ const Setting<std::vector<double>> kEffortLimits{"effort_limits", kLimitRange,
                                                  "largest efforts, N m or N, in the same way"};
 const Setting<std::vector<double>> kEffortShareBounds{
     "effort_share_bounds", Range{.lower = 1e-3, .upper = 1}, kNoDefault,
-    "for the curve line: least and largest share of its effort limit that a joint may use, which is "
+    "for the curve line: least and largest share of its effort limit that a joint may use, which "
+    "is "
     "a variable (default: 0.1 and 1)"};
 const Setting<double> kToolSpeedLimit{"tool_speed_limit_m_per_s", kLimitRange, kNoDefault,
                                       "largest speed of the tip (default: none)"};
@@ -90,10 +91,10 @@ const Setting<std::vector<double>> kPointTool{
 const Setting<std::vector<double>> kPointToolRpy{
     "tool_rpy_rad", kAngleRange, kNoDefault,
     "the tool's orientation there: roll, pitch and yaw (default: free)"};
-const Setting<std::string> kPointFile{
-    "file", kNoDefault,
-    "joint positions of one or more points: a motion.csv or JointTrajectory, looked for beside this "
-    "file; its times do not count"};
+const Setting<std::string> kPointFile{"file", kNoDefault,
+                                      "joint positions of one or more points: a motion.csv or "
+                                      "JointTrajectory, looked for beside this "
+                                      "file; its times do not count"};
 const Setting<bool> kPointFree{"free", false,
                                "whether the joint positions of the point are variables"};
 const SettingTable kMotionPointSettings{
@@ -243,8 +244,8 @@ void check_line(const ConfigTable& its, const std::vector<ConfigTable>& tables,
     const double way_m =
         k == 0 ? 1 : (tool->position_m - config.points[k - 1].tool->position_m).norm();
     if (way_m == 0) {
-      tables[k].refuse(kPointTool, fmt::format("point {} is the same as point {}; leave one out",
-                                               k + 1, k));
+      tables[k].refuse(kPointTool,
+                       fmt::format("point {} is the same as point {}; leave one out", k + 1, k));
     }
   }
   for (const auto* setting : {&kJerkLimits, &kIntervals}) {
@@ -362,13 +363,28 @@ void read_motion_objective(const ConfigTable& table, MotionConfig& config) {
 
 }  // namespace
 
-const SettingTable kMotionSettings{
-    .key = "motion",
-    .settings = {&kCurve, &kEnds, &kProfile, &kIntervals, &kShortestInterval, &kLongestInterval,
-                 &kMotionSamples, &kMotionHome, &kRangeLimit, &kRobotLimits, &kSpeedLimits,
-                 &kAccelerationLimits, &kJerkLimits, &kEffortLimits, &kEffortShareBounds,
-                 &kToolSpeedLimit, &kLeastClearance, &kSelfClearance, &kPayloadMass, &kPayloadCom},
-    .tables = {&kMotionPointSettings}};
+const SettingTable kMotionSettings{.key = "motion",
+                                   .settings = {&kCurve,
+                                                &kEnds,
+                                                &kProfile,
+                                                &kIntervals,
+                                                &kShortestInterval,
+                                                &kLongestInterval,
+                                                &kMotionSamples,
+                                                &kMotionHome,
+                                                &kRangeLimit,
+                                                &kRobotLimits,
+                                                &kSpeedLimits,
+                                                &kAccelerationLimits,
+                                                &kJerkLimits,
+                                                &kEffortLimits,
+                                                &kEffortShareBounds,
+                                                &kToolSpeedLimit,
+                                                &kLeastClearance,
+                                                &kSelfClearance,
+                                                &kPayloadMass,
+                                                &kPayloadCom},
+                                   .tables = {&kMotionPointSettings}};
 const SettingTable kTubeSettings{
     .key = "tubes",
     .settings = {&kYoungsModulus, &kTubeDensity, &kDiameters, &kWalls, &kLengthBounds,
@@ -417,9 +433,9 @@ void load_motion(const ConfigTable& table, LoadedProblem& loaded) {
   }
   std::vector<ConfigTable> points;  // that of each point
   for (const ConfigTable& table_of : its.get_tables_or_empty(kMotionPointSettings)) {
-    const std::vector<MotionPoint> read =
-        table_of.has(kPointFile) ? read_point_file(table_of, config.robot, loaded)
-                                 : std::vector{read_point(table_of, config.robot)};
+    const std::vector<MotionPoint> read = table_of.has(kPointFile)
+                                              ? read_point_file(table_of, config.robot, loaded)
+                                              : std::vector{read_point(table_of, config.robot)};
     config.points.insert(config.points.end(), read.begin(), read.end());
     points.insert(points.end(), read.size(), table_of);
   }

@@ -101,13 +101,15 @@ const Setting<std::string> kObjectiveKind{
     one_of({"error", "error_and_torque", "torque_with_error_limit", "error_with_torque_limit",
             "front", kErrorVsTorque}),
     "error",
-    "what is minimised: one number, or each of objective.quantities (front). error_vs_torque is the "
+    "what is minimised: one number, or each of objective.quantities (front). error_vs_torque is "
+    "the "
     "front of these two. For the kind motion: sum (the default) or front"};
 
 const Setting<std::vector<std::string>> kObjectiveQuantities{
     "quantities", kNoDefault,
     "what is minimised. In a front: error, torque, energy, duration, peak_torque, rms_torque, "
-    "moving_mass, and the quantity of a [[requirement]]. For the kind motion: duration (the default), "
+    "moving_mass, and the quantity of a [[requirement]]. For the kind motion: duration (the "
+    "default), "
     "jerk, energy, peak_torque, rms_torque, clearance (made large), deflection and tool_speed"};
 const SettingTable kObjectiveSettings{
     .key = "objective",
@@ -207,10 +209,11 @@ void read_front(const ConfigTable& table, TrackingConfig& config) {
     const auto& rows = requirement_table();
     if (std::ranges::find(known, name) == known.end() &&
         std::ranges::find(rows, name, &RequirementRow::key) != rows.end()) {
-      table.refuse(kObjectiveQuantities,
-                   fmt::format("'{0}' is measured for a [[requirement]] only; add one with quantity "
-                               "= \"{0}\", whose limit also bounds what lost cases count",
-                               name));
+      table.refuse(
+          kObjectiveQuantities,
+          fmt::format("'{0}' is measured for a [[requirement]] only; add one with quantity "
+                      "= \"{0}\", whose limit also bounds what lost cases count",
+                      name));
     }
   }
   std::vector<WeightedQuantity> terms = read_quantities(table, names, known, true);
@@ -230,10 +233,11 @@ void read_front(const ConfigTable& table, TrackingConfig& config) {
       refuse_constant(i, "add length_scale or section_scale to variables.optimize, or [motors]");
     }
     if (!table.has(kObjectiveScales)) {
-      terms[i].scale = quantity == Of::error         ? objective.error_scale_m
-                       : quantity == Of::torque      ? objective.torque_scale_n_m
-                       : quantity == Of::requirement ? config.requirements[terms[i].quantity - first].limit
-                                                           : 1;
+      terms[i].scale = quantity == Of::error    ? objective.error_scale_m
+                       : quantity == Of::torque ? objective.torque_scale_n_m
+                       : quantity == Of::requirement
+                           ? config.requirements[terms[i].quantity - first].limit
+                           : 1;
     }
   }
   objective.set_front(std::move(terms));

@@ -47,8 +47,7 @@ const Setting<std::vector<double>> kObstacleFrom{"from_m", kCellPlace, kNoDefaul
 const Setting<std::vector<double>> kObstacleTo{"to_m", kCellPlace, kNoDefault,
                                                "of a capsule: the other end"};
 const Setting<std::string> kObstacleFile{
-    "file", kNoDefault,
-    "of urdf: the file, looked for beside this one; its joints are at 0"};
+    "file", kNoDefault, "of urdf: the file, looked for beside this one; its joints are at 0"};
 const Setting<std::vector<double>> kObstaclePosition{
     "position_m", kCellPlace, std::vector<double>{0, 0, 0},
     "of urdf: place of the root link, x, y and z in the world"};

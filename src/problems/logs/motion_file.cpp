@@ -274,8 +274,8 @@ std::string write_joint_trajectory(const RobotModel& robot, const MotionSamples&
   return text;
 }
 
-MotionSamples parse_motion(std::string_view text, const std::string& name,
-                           const RobotModel& robot, bool timed) {
+MotionSamples parse_motion(std::string_view text, const std::string& name, const RobotModel& robot,
+                           bool timed) {
   const std::string file = sanitize(name);
   return name.ends_with(".yaml") || name.ends_with(".yml") ? parse_yaml(text, file, robot)
                                                            : parse_csv(text, file, robot, timed);

@@ -154,14 +154,13 @@ std::vector<LeastTime> MotionProblem::time_lines(const RobotModel& robot,
   for (std::size_t k = 0; k < paths.size(); ++k) {
     times.push_back(calc_least_time(robot, config_.gravity_m_per_s2, paths[k], limits));
     if (const auto place = times.back().stuck_place) {
-      reason = fmt::format("between points {} and {}: no speed suits the line at {:.3g} % of it; "
-                           "joint '{}' cannot hold the arm there within {:.4g} {}",
-                           k + 1, k + 2,
-                           100 * static_cast<double>(*place) /
-                               static_cast<double>(paths[k].size() - 1),
-                           robot.joints[times.back().stuck_joint].name,
-                           limits.effort[times.back().stuck_joint],
-                           get_effort_unit(robot.joints[times.back().stuck_joint].kind));
+      reason = fmt::format(
+          "between points {} and {}: no speed suits the line at {:.3g} % of it; "
+          "joint '{}' cannot hold the arm there within {:.4g} {}",
+          k + 1, k + 2,
+          100 * static_cast<double>(*place) / static_cast<double>(paths[k].size() - 1),
+          robot.joints[times.back().stuck_joint].name, limits.effort[times.back().stuck_joint],
+          get_effort_unit(robot.joints[times.back().stuck_joint].kind));
       return {};
     }
   }

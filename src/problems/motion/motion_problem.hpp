@@ -95,7 +95,7 @@ struct MotionConfig {
   std::vector<double> intervals_s;  // empty: variables
   MotionBounds interval_s{0.02, 20};
   MotionBounds effort_share{0.1, 1};  // of the curve `line`
-  JointLimits limits;  // one number per joint, infinite where there is none
+  JointLimits limits;                 // one number per joint, infinite where there is none
   bool limits_range = true;
   std::optional<double> tool_speed_limit_m_per_s, least_clearance_m, deflection_limit_m;
   std::vector<WeightedQuantity> objective{WeightedQuantity{}};  // of MotionQuantity

@@ -62,10 +62,9 @@ RequiredValue measure_one(const Requirement& requirement, const TrackingSetup& s
     case Q::energy:
       return {.value = result.energy_j, .joint = {}, .point = {}};
     case Q::jerk:
-      return {
-          .value = calc_jerk_integral(setup.robot(), targets, result, task.control_period_s),
-          .joint = {},
-          .point = {}};
+      return {.value = calc_jerk_integral(setup.robot(), targets, result, task.control_period_s),
+              .joint = {},
+              .point = {}};
     case Q::tip_error:
       for (std::size_t k = get_first_counted(task); k < result.point_error_m.size(); ++k) {
         keep_larger(worst, result.point_error_m[k], k);

@@ -118,8 +118,8 @@ double get_term(const WeightedQuantity& term, const ObjectiveTerms& terms) {
 }  // namespace
 
 const std::vector<std::string>& tracking_quantity_names() {
-  static const std::vector<std::string> names = {"error",       "torque",     "energy",     "duration",
-                                                 "peak_torque", "rms_torque", "moving_mass"};
+  static const std::vector<std::string> names = {
+      "error", "torque", "energy", "duration", "peak_torque", "rms_torque", "moving_mass"};
   return names;
 }
 

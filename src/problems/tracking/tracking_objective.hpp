@@ -99,12 +99,12 @@ struct TrackingObjective {
   double error_limit_m = 0;           // e_max; 0: no limit
   double total_torque_limit_n_m = 0;  // tau_max; 0: no limit
   Statistic statistic = Statistic::mean;
-  double cvar_share = 0.1;       // s, 0 < s <= 1
-  double failure_penalty_m = 1;  // the cost of a case in which the arm lost its target
-  double energy_weight = 0;      // w_E, for error and error_and_torque
-  double energy_scale_j = 1;     // E_0
-  double duration_weight = 0;    // w_T, for the same objectives
-  double duration_scale_s = 1;   // T_0
+  double cvar_share = 0.1;                   // s, 0 < s <= 1
+  double failure_penalty_m = 1;              // the cost of a case in which the arm lost its target
+  double energy_weight = 0;                  // w_E, for error and error_and_torque
+  double energy_scale_j = 1;                 // E_0
+  double duration_weight = 0;                // w_T, for the same objectives
+  double duration_scale_s = 1;               // T_0
   std::vector<WeightedQuantity> front = {};  // set_front() fills it
 
   // Makes the objective a front, with the weights and scales above where its terms have them.

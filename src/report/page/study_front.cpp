@@ -83,11 +83,10 @@ json make_study_front(const StudyPlan& plan, const StudyProblem& studied,
       }
     }
     const bool is_plane = problem.objectives.size() == 2 && !fronts.empty();
-    optimizers.push_back({{"points", std::move(points)},
-                          {"igd_plus", igd_plus.empty()
-                                           ? json()
-                                           : finite_or_null(calc_spread(igd_plus).median)},
-                          {"attainment", is_plane ? make_surfaces(fronts) : json::array()}});
+    optimizers.push_back(
+        {{"points", std::move(points)},
+         {"igd_plus", igd_plus.empty() ? json() : finite_or_null(calc_spread(igd_plus).median)},
+         {"attainment", is_plane ? make_surfaces(fronts) : json::array()}});
   }
   return {{"objectives", std::move(objectives)},
           {"reference_point", finite_or_null(result.reference_point)},

@@ -81,10 +81,10 @@ struct OptimizerResult {
   // Only for several objectives: IGD+ of each replicate's front, from the common front of all runs, with
   // its extent as the unit (pareto.hpp). `values` alone decides who is better.
   std::vector<double> igd_plus;
-  int successes = 0;           // number of replicates with a success (Margin::is_success())
-  int infinite = 0;            // number of replicates without a value
-  int infeasible = 0;          // those of them whose winner violates a constraint on the test set
-  int failed = 0;              // number of replicates in which the optimizer itself failed
+  int successes = 0;   // number of replicates with a success (Margin::is_success())
+  int infinite = 0;    // number of replicates without a value
+  int infeasible = 0;  // those of them whose winner violates a constraint on the test set
+  int failed = 0;      // number of replicates in which the optimizer itself failed
   // Number of replicates whose winner violates a constraint on the test set, or that ended without a
   // winner although the optimizer did not fail.
   int unmet = 0;

@@ -178,8 +178,8 @@ TEST_P(NloptConstraints, AreRespectedAndCostNoEvaluations) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rows, NloptConstraints,
-                         testing::Values("nlopt:cobyla", "nlopt:slsqp", "nlopt:isres", "nlopt:ags", "nlopt:auglag",
-                                         "nlopt:auglag_eq", "nlopt:orig_direct"),
+                         testing::Values("nlopt:cobyla", "nlopt:slsqp", "nlopt:isres", "nlopt:ags",
+                                         "nlopt:auglag", "nlopt:auglag_eq", "nlopt:orig_direct"),
                          [](const auto& parameters) { return parameters.param.substr(6); });
 
 // Every point of a difference is an evaluation: 4 variables take 4 or 8 points at a place.

@@ -11,7 +11,8 @@ namespace {
 
 constexpr const char* kProblems =
     "abdessemed-fuzzy, ackley, bbob-f1, bbob-f10, bbob-f15, bbob-f2, bbob-f3, bbob-f8, "
-    "branin, chaiyaratana-line, co-design, constrained, dtlz2, ellipsoid, ellipsoid-int, excite, faithful-e6, "
+    "branin, chaiyaratana-line, co-design, constrained, dtlz2, ellipsoid, ellipsoid-int, excite, "
+    "faithful-e6, "
     "faithful-q1, faithful-q3, gasparetto, gasparetto-front, hartmann6, identify, initial, "
     "initial-0cm, initial-45cm, initial-90cm, q1-complex, q1-ramp, q1-requirements, q1-step, "
     "q1-trapezoid, q1-triangular, q2-e1, q2-e2, q2-e3, q2-e4, q2-e5, q2-e6, q2-energy, "
@@ -53,7 +54,8 @@ TEST(BadName, UnknownRobotIsNamedWhereTheProblemNamesIt) {
   EXPECT_EQ(ProblemFolder().refusal_of_base_with("[robot]\nurdf = 'irb4600_40_254'"),
             "p.toml:3: robot.urdf is 'irb4600_40_254'; unknown robot 'irb4600_40_254'; did you "
             "mean 'irb4600_40_255'? Valid: arm7, arm7_gripper, irb4600_40_255, irb4600_six, kr300, "
-            "planar2, puma560, subudhi_flexible, three_rods, two_tubes (or the path of a .urdf or .xml file)");
+            "planar2, puma560, subudhi_flexible, three_rods, two_tubes (or the path of a .urdf or "
+            ".xml file)");
 }
 
 TEST(BadPath, SaysWhereItWasLookedFor) {

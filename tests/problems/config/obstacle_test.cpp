@@ -50,7 +50,8 @@ TEST(TaskObstacle, OnThePathIsNamedBeforeAnythingRuns) {
 
 TEST(TaskObstacle, OutOfReachChangesNoFaultAndNoBitOfAnEvaluation) {
   const std::vector<std::string> fast = {"task.limits=warn"};  // joints are too slow for Q1
-  const LoadedProblem none = load_problem("q1-complex", fast), far = load_problem("q1-complex", with(fast, {kFar}));
+  const LoadedProblem none = load_problem("q1-complex", fast),
+                      far = load_problem("q1-complex", with(fast, {kFar}));
   const std::vector<std::string> faults = check_paths(none);
   EXPECT_GT(faults.size(), 1u);
   EXPECT_EQ(check_paths(far), faults);

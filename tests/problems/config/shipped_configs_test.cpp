@@ -205,10 +205,11 @@ TEST(ShippedProblems, AreAllKnownHere) {
   for (const Experiment& experiment : make_experiments()) {
     expected.push_back(experiment.name);
   }
-  expected.insert(expected.end(),
-                  {"subudhi-flexible", "abdessemed-fuzzy", "chaiyaratana-line", "co-design", "excite", "gasparetto",
-                   "gasparetto-front", "identify", "q1-requirements", "q2-energy", "q2-error",
-                   "q2-pareto", "q2-torque", "robot", "saravanan-puma", "shiakolas"});
+  expected.insert(
+      expected.end(),
+      {"subudhi-flexible", "abdessemed-fuzzy", "chaiyaratana-line", "co-design", "excite",
+       "gasparetto", "gasparetto-front", "identify", "q1-requirements", "q2-energy", "q2-error",
+       "q2-pareto", "q2-torque", "robot", "saravanan-puma", "shiakolas"});
   for (const std::string experiment : {"q1", "e6", "q3"}) {
     expected.push_back("robust-" + experiment);
     expected.push_back("faithful-" + experiment);

@@ -226,9 +226,10 @@ TEST(Line, RestsAtThePointsBetween) {
 
 TEST(MotionProblem, TakesItsPointsFromAFile) {
   const TemporaryFolder folder;
-  write_file_atomically(folder.path() / "points.csv",
-             "position_1_rad,position_2_rad,position_3_rad,position_4_rad,position_5_rad,position_6_rad"
-             "\n0,1,-1,0,0,0\n0.2,1.1,-1.2,0,0,0\n0.3,1,-1,0,0,0\n");
+  write_file_atomically(
+      folder.path() / "points.csv",
+      "position_1_rad,position_2_rad,position_3_rad,position_4_rad,position_5_rad,position_6_rad"
+      "\n0,1,-1,0,0,0\n0.2,1.1,-1.2,0,0,0\n0.3,1,-1,0,0,0\n");
   const auto load = [&](const std::string& points) {
     return load_problem("gasparetto", std::vector<std::string>{"motion.range_limits=false",
                                                                "motion.point=" + points});

@@ -289,8 +289,8 @@ double get_metric(const TrackingProblem& problem, const Evaluation& evaluation,
 
 TEST(Front, OfErrorAndTorqueIsErrorVsTorqueBitByBit) {
   const auto [old_kind, old_one] = evaluate_start({"objective.kind=error_vs_torque"});
-  const auto [front, one] = evaluate_start(
-      {"objective.kind=front", "objective.quantities=[\"error\", \"torque\"]"});
+  const auto [front, one] =
+      evaluate_start({"objective.kind=front", "objective.quantities=[\"error\", \"torque\"]"});
   EXPECT_EQ(one.objectives, old_one.objectives);
   EXPECT_EQ(one.metrics, old_one.metrics);
   EXPECT_EQ(one.residuals, old_one.residuals);
@@ -303,8 +303,7 @@ TEST(Front, HasTheMetricsAsObjectives) {
   const auto [problem, one] = evaluate_start(
       {"objective.kind=front", "variables.task=[\"speed\"]",
        "objective.quantities=[\"error\", \"energy\", \"duration\", \"jerk\", \"peak_torque\"]",
-       "requirement=[{quantity=\"jerk\", limit_rad2_per_s5=1e5}]",
-       "objective.error_limit_m=0.5"});
+       "requirement=[{quantity=\"jerk\", limit_rad2_per_s5=1e5}]", "objective.error_limit_m=0.5"});
   ASSERT_THAT(one.objectives, SizeIs(5));
   const auto metric = [&](const std::string& name) { return get_metric(*problem, one, name); };
   EXPECT_EQ(one.objectives[0], metric("error"));

@@ -240,8 +240,9 @@ TEST_F(StudyTest, FrontsAreComparedByTheHypervolumeTheyMiss) {
   EXPECT_LT(problem.optimizers[1].spread.median, 1);
   const auto tables = read_tree(temporary_ / "study" / "tables");
   EXPECT_TRUE(tables.contains("fronts.csv"));
-  EXPECT_THAT(tables.at("indicators.csv"),
-              testing::StartsWith("problem,optimizer,replicate,missed_hypervolume,igd_plus\nq2-pareto,"));
+  EXPECT_THAT(
+      tables.at("indicators.csv"),
+      testing::StartsWith("problem,optimizer,replicate,missed_hypervolume,igd_plus\nq2-pareto,"));
   EXPECT_EQ(std::ranges::count(tables.at("indicators.csv"), '\n'), 1 + 2 * 3);
   for (const OptimizerResult& one : problem.optimizers) {
     ASSERT_EQ(one.igd_plus.size(), 3u);
