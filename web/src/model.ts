@@ -16,10 +16,8 @@ export interface Column {
 }
 
 // A cell may have the command that made its value.
-export interface Cell {
+export interface Cell extends Provenance {
   value: Value;
-  command?: string;
-  note?: string;
   mark?: 'good' | 'near' | 'bad' | 'none'; // a colour with the same meaning as the text
 }
 
@@ -41,6 +39,7 @@ export type Picked = Record<string, string>;
 export interface Provenance {
   note?: string;
   command?: string;
+  file?: { name: string; text: string }; // to save before the command
 }
 
 export interface Figure {

@@ -125,10 +125,11 @@ void TrackingProblem::check_bounds() const {
 void TrackingProblem::describe_jacobian() {
   std::string& advice = description_.jacobian_advice;
   if (config_.objective.energy_weight > 0) {
-    advice = config_.objective.kind == TrackingObjective::Kind::front
-                 ? "the energy in the objective has no derivatives; leave it out of "
-                   "objective.quantities"
-                 : "the energy in the objective has no derivatives; set objective.energy_weight to 0";
+    advice =
+        config_.objective.kind == TrackingObjective::Kind::front
+            ? "the energy in the objective has no derivatives; leave it out of "
+              "objective.quantities"
+            : "the energy in the objective has no derivatives; set objective.energy_weight to 0";
   } else if (changes_links(config_) || changes_speed(config_)) {
     advice =
         "variables that change the arm or the task have no derivatives; leave length_scale, "

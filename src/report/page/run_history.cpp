@@ -1,12 +1,18 @@
 // Makes the parts of a run's page that show the course of training.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
 
+#include "problems/config/design_file.hpp"
+#include "problems/config/values_file.hpp"
 #include "report/evidence/page_json.hpp"
 #include "report/page/run_parts.hpp"
+#include "study/run/winner_record.hpp"
 #include "study/statistics/summary.hpp"
 
 namespace armwright {
@@ -177,6 +183,44 @@ json make_variables(const RecordedRun& run, const History& history) {
   return list;
 }
 
+namespace {
+
+// Returns the file of a design of the front, as winner.toml of the run would have it, and the command
+// that evaluates it; null if the problem cannot be rebuilt or has no such files.
+json make_design_file(const RecordedRun& run, const Candidate& candidate) {
+  if (!run.problem) {
+    return nullptr;
+  }
+  const std::string name = fmt::format("front-{}.toml", candidate.evaluation);
+  const std::string title =
+      fmt::format("Evaluation {} of a run on {}", candidate.evaluation, run.problem_name);
+  const std::string source =
+      fmt::format("armwright, the front of the run in {}", run.folder.string());
+  std::string text;
+  if (const TrackingProblem* tracking = run.tracking()) {
+    DesignFile file;
+    file.name = fmt::format("front-{}", candidate.evaluation);
+    file.title = title;
+    file.source = source;
+    file.design = tracking->make_design(candidate.x);
+    for (const Joint& joint : tracking->config().robot.joints) {
+      file.joint_names.push_back(joint.name);
+    }
+    text = to_toml(file);
+  } else if (has_values(*run.problem->problem)) {
+    text = to_toml(ValuesFile{
+        .title = title,
+        .source = source,
+        .variables = list_values(run.problem->problem->description().variables, candidate.x),
+        .objectives = {}});
+  } else {
+    return nullptr;
+  }
+  return {{"name", name}, {"text", text}, {"command", run.make_evaluate_command(name, {})}};
+}
+
+}  // namespace
+
 json make_front(const RecordedRun& run) {
   if (!run.result || run.result->objectives.size() < 2) {
     return nullptr;
@@ -202,7 +246,9 @@ json make_front(const RecordedRun& run) {
     }
     points.push_back({{"values", evaluation.objectives},
                       {"on_front", !covered},
-                      {"x", result.judged[i].candidate.x}});
+                      {"x", result.judged[i].candidate.x},
+                      {"evaluation", result.judged[i].candidate.evaluation},
+                      {"file", make_design_file(run, result.judged[i].candidate)}});
   }
   json objectives = json::array();
   for (const Quantity& objective : result.objectives) {

@@ -8,8 +8,13 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "base/file.hpp"
+#include "base/temporary_folder.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/config/config_files.hpp"
+#include "problems/config/design_file.hpp"
+#include "problems/config/problem_loader.hpp"
+#include "problems/tracking/tracking_problem.hpp"
 #include "report/page/data_contract.hpp"
 #include "report/page/page_data.hpp"
 #include "report/page/unpack.hpp"
@@ -282,6 +287,18 @@ TEST_F(RunPage, OfSeveralObjectivesHasAFront) {
   make_run(make_plan("q2-pareto", "ga", 40), "a");
   const json page = make_page("a");
   expect_interface(page["front"], {"RunFront"});
+  const json& point = page["front"]["points"][0];
+  expect_interface(point["file"], {"DesignFile"});
+  const std::string name = point["file"]["name"];
+  EXPECT_EQ(name, "front-" + std::to_string(point["evaluation"].get<int>()) + ".toml");
+  EXPECT_THAT(point["file"]["command"].get<std::string>(),
+              HasSubstr("armwright evaluate " + name + " --problem q2-pareto"));
+  // The file is the design.
+  const TemporaryFolder saved;
+  write_file_atomically(saved / name, point["file"]["text"].get<std::string>());
+  const auto problem = load_problem("q2-pareto");
+  EXPECT_EQ(problem.tracking()->make_vector(load_design((saved / name).string()).design),
+            point["x"].get<std::vector<double>>());
   EXPECT_EQ(page["front"]["objectives"].size(), 2u);
   EXPECT_TRUE(page["front"]["winner"].is_number());
   EXPECT_FALSE(page["front"]["points"].empty());

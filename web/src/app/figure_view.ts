@@ -6,7 +6,7 @@ import { fit_width, kNarrow_px } from '../charts/narrow';
 import { draw_svg, get_initial_picks, get_paper_size, kDefaultHeight } from '../charts/svg';
 import { can_zoom, read_curves, zoom_in, type Range, type Selected } from '../charts/zoom';
 import { to_csv } from '../csv';
-import type { Column, Figure, Picked } from '../model';
+import type { Column, Figure, Picked, Provenance } from '../model';
 import { format_number } from '../numbers';
 import { CrossHair, type Crossing } from './cross_hair';
 import { make, make_button, make_select } from './dom';
@@ -27,9 +27,9 @@ interface Hovered {
   marker?: unknown;
 }
 
-function get_provenance(data: unknown): { note?: string; command?: string } {
+function get_provenance(data: unknown): Provenance {
   if (data !== null && typeof data === 'object' && !Array.isArray(data)) {
-    return data as { note?: string; command?: string };
+    return data as Provenance;
   }
   return {};
 }
@@ -43,12 +43,14 @@ function describe_point(hovered: Hovered | Hovered[], columns: Column[]): HTMLEl
       .filter((value): value is number | string => typeof value === 'number' || typeof value === 'string')
       .slice(0, Math.max(2, columns.length))
       .map((value) => (typeof value === 'number' ? format_number(value) : value));
-    const { note, command } = get_provenance(one.data);
+    const { note, command, file } = get_provenance(one.data);
     if (!note) {
       box.append(make('strong', {}, one.seriesName ?? one.name ?? ''));
     }
     box.append(make('div', {}, note ?? numbers.join(', ')));
-    if (command) {
+    if (file) {
+      box.append(make('div', { class: 'tip-hint' }, 'Choose the point to save this design.'));
+    } else if (command) {
       box.append(make('div', { class: 'tip-hint' }, 'Choose the point to see the command that reproduces it.'));
     }
   }
@@ -289,10 +291,10 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     move_cursor();
   }
 
-  function show_details(note: string | undefined, command: string | undefined): void {
+  function show_details(provenance: Provenance): void {
     details.replaceChildren();
-    if (note || command) {
-      details.append(make_provenance(note, command, () => details.replaceChildren()));
+    if (provenance.note || provenance.command) {
+      details.append(make_provenance(provenance, () => details.replaceChildren()));
     }
   }
 
@@ -303,8 +305,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     chart = echarts.init(plot, null, { renderer: 'svg' });
     draw();
     chart.on('click', (event) => {
-      const { note, command } = get_provenance(event.data);
-      show_details(note, command);
+      show_details(get_provenance(event.data));
     });
     chart.on('legendselectchanged', (event) => {
       const { name, selected: after } = event as unknown as { name: string; selected: Selected };
@@ -355,7 +356,7 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
   for (const choice of figure.choices ?? []) {
     const select = make_select(choice.options, choice.initial, (value) => {
       picked[choice.id] = value;
-      show_details(undefined, undefined);
+      show_details({});
       selected = undefined;
       draw();
       if (figure.time !== undefined && figure.time.case(picked) !== clock.case_id) {

@@ -1,10 +1,21 @@
+import type { Provenance } from '../model';
 import { make, make_button } from './dom';
+import { download } from './download';
 
-// Returns a box that shows where a point or a row comes from, and the command that makes it again.
-export function make_provenance(note: string | undefined, command: string | undefined, on_close: () => void): HTMLElement {
+// Returns a box that shows where a point or a row comes from, its file, and the command that makes it
+// again.
+export function make_provenance({ note, command, file }: Provenance, on_close: () => void): HTMLElement {
   const box = make('div', { class: 'provenance' });
   if (note) {
     box.append(make('p', {}, note));
+  }
+  if (file) {
+    box.append(
+      make_button('Save ' + file.name, () => download(file.name, 'application/toml', file.text), {
+        class: 'save-design',
+        title: 'The design as a file, for the command below',
+      }),
+    );
   }
   if (command) {
     const text = make('code', {}, command);

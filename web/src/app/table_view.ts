@@ -1,6 +1,6 @@
 // Tables that the reader can sort by any column, in the page and in a dialog.
 import { get_value, to_csv, get_heading } from '../csv';
-import type { Cell, Column, DataTable, TableItem, Value } from '../model';
+import type { Cell, Column, DataTable, Provenance, TableItem, Value } from '../model';
 import { format_number } from '../numbers';
 import { make_cut_box } from './cut_box';
 import { make, make_button } from './dom';
@@ -31,10 +31,10 @@ function make_cell(cell: Value | Cell, column: Column, details: HTMLElement): HT
   const text = typeof value === 'number' ? format_number(value, column.digits ?? 4) : (value ?? '–');
   const kind = typeof value === 'number' || column.numeric ? 'number' : text.length > kLong ? 'long' : '';
   const element = make('td', { class: kind });
-  const { command, note } = cell !== null && typeof cell === 'object' ? cell : { command: undefined, note: undefined };
-  if (command || note) {
+  const provenance: Provenance = cell !== null && typeof cell === 'object' ? cell : {};
+  if (provenance.command || provenance.note) {
     element.append(
-      make_button(text, () => details.replaceChildren(make_provenance(note, command, () => details.replaceChildren())), {
+      make_button(text, () => details.replaceChildren(make_provenance(provenance, () => details.replaceChildren())), {
         class: 'link',
         title: 'Show the origin of this value',
       }),

@@ -174,9 +174,17 @@ export interface TestErrors {
   }[];
 }
 
+export interface DesignFile {
+  name: string; // "front-12.toml"
+  text: string;
+  command: string; // that evaluates the saved file; may be empty
+}
+
 export interface RunFront {
   objectives: Quantity[];
-  points: { values: number[]; on_front: boolean; x: number[] }[];
+  // `evaluation` counts from 0. `file` holds the design for armwright evaluate; null if the problem
+  // could not be rebuilt.
+  points: { values: number[]; on_front: boolean; x: number[]; evaluation: number; file: DesignFile | null }[];
   winner: number | null; // index
 }
 

@@ -25,7 +25,7 @@ export function make_front_figure(front: RunFront, variables: VariableHistory[])
   const value_of = (point: number, objective: number) => front.points[point].values[objective] * shown[objective].factor;
   const on_front = front.points.map((_, i) => i).filter((i) => front.points[i].on_front);
   const name_point = (i: number) =>
-    `${shown.map((one, k) => `${one.name} ${format_number(value_of(i, k))} ${one.unit}`.trim()).join(', ')}. ` +
+    `Evaluation ${front.points[i].evaluation}: ${shown.map((one, k) => `${one.name} ${format_number(value_of(i, k))} ${one.unit}`.trim()).join(', ')}. ` +
     front.points[i].x
       .map(
         (value, k) => `${variables[k] ? shorten(variables[k].name) : `x${k + 1}`} = ${format_choice(variables[k]?.choices ?? [], value)}`,
@@ -40,13 +40,19 @@ export function make_front_figure(front: RunFront, variables: VariableHistory[])
       `The ${on_front.length} bold designs are the front: none of them is better than another in all objectives. ` +
       (count === 2 ? 'The line under them bounds the area that they attain. ' : '') +
       (front.winner !== null ? 'The diamond is the winner by the weighted sum. ' : '') +
+      (front.points.some((point) => point.file !== null) ? 'Choose a design, here or in the table, to save it. ' : '') +
       'An axis is logarithmic if its numbers spread over more than a decade.',
     width: 'full',
     height: 420,
     choices: count > 2 ? choices : undefined,
     draw: (look, picked) => {
       const axes = get_axes(picked);
-      const at = (i: number) => ({ value: axes.map((axis) => value_of(i, axis)), note: name_point(i) });
+      const at = (i: number) => ({
+        value: axes.map((axis) => value_of(i, axis)),
+        note: name_point(i),
+        command: front.points[i].file?.command,
+        file: front.points[i].file ?? undefined,
+      });
       const logs = axes.map((axis) => {
         const values = front.points.map((_, i) => value_of(i, axis));
         const range = find_range(values);
@@ -109,11 +115,13 @@ export function make_front_figure(front: RunFront, variables: VariableHistory[])
       const names = front.points[0].x.map((_, k) => (variables[k] ? variables[k].name : `x${k + 1}`));
       return {
         columns: [
+          { label: 'evaluation', numeric: true, digits: 9 },
           { label: 'on the front' },
           ...shown.map((one) => ({ label: one.name, unit: one.unit, numeric: true })),
           ...names.map((label, k) => ({ label, unit: variables[k] ? variables[k].unit : '', numeric: true })),
         ],
         rows: front.points.map((point, i) => [
+          { value: point.evaluation, note: name_point(i), command: point.file?.command, file: point.file ?? undefined },
           (i === front.winner ? 'winner' : point.on_front ? 'yes' : 'no') as Value,
           ...shown.map((_, k) => value_of(i, k)),
           ...names
