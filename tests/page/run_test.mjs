@@ -102,6 +102,51 @@ test('a run of several objectives and one of a function have pages, too', async 
   }
 });
 
+test('a click on the front picks a design that can be saved and evaluated', async () => {
+  const { page, expect_no_faults } = await open_run('front');
+  for (const tab of await list_tabs(page)) {
+    await open_tab(page, tab);
+    if ((await page.locator('[data-figure=front]').count()) > 0) {
+      break;
+    }
+  }
+  const card = await find_figure(page, 'front');
+  await page.waitForFunction(() => document.querySelectorAll('[data-figure=front] .plot svg path').length > 5);
+  const plot = await card.locator('.plot').boundingBox();
+  let said = '';
+  for (let y = 0.1; y < 0.9 && said === ''; y += 0.01) {
+    for (let x = 0.1; x < 0.97 && said === ''; x += 0.01) {
+      await page.mouse.move(plot.x + x * plot.width, plot.y + y * plot.height);
+      const pointed = await card.locator('.plot').evaluate((one) => one.querySelector('.tip')?.textContent ?? '');
+      if (pointed.includes('save this design')) {
+        await page.mouse.click(plot.x + x * plot.width, plot.y + y * plot.height);
+        said = await card.locator('.details').innerText();
+      }
+    }
+  }
+  const name = said.match(/Save (front-\d+\.toml)/)?.[1];
+  assert.ok(name, said);
+  assert.match(said, /Evaluation \d+: error [^]*total torque/);
+  const saving = page.waitForEvent('download');
+  await card.locator('.save-design').click();
+  const saved = await saving;
+  assert.equal(saved.suggestedFilename(), name);
+  await saved.saveAs(join(kFolder, name));
+  const command = await card.locator('.details code').innerText();
+  assert.ok(command.startsWith(`armwright evaluate ${name} --problem q2-pareto`), command);
+  const words = command.split(' ').slice(3);
+  assert.match(run_program('evaluate', join(kFolder, name), ...words, '--cases', '2'), /mean error/);
+  // The same without a mouse, in the table.
+  await card.getByRole('button', { name: 'Table' }).focus();
+  await page.keyboard.press('Enter');
+  const dialog = page.locator('dialog[open]');
+  await dialog.locator('tbody button.link').first().focus();
+  await page.keyboard.press('Enter');
+  assert.match(await dialog.innerText(), /Save front-\d+\.toml/);
+  expect_no_faults();
+  await page.close();
+});
+
 test("a run of a user's problem shows its words, limits, signals and files, and no arm", async () => {
   const { page, expect_no_faults } = await open_run('own');
   assert.deepEqual(await list_tabs(page), ['overview', 'training', 'response', 'winner']);
