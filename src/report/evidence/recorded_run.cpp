@@ -82,11 +82,16 @@ std::optional<NamedProblem> find_named_problem(const RecordedRun& run) {
 std::map<std::string, json> list_settings(const json& resolved) {
   std::map<std::string, json> settings;
   for (const char* table : {"robot", "task", "control", "physics", "motors", "perturbation",
-                            "workspace", "objective", "variables", "function"}) {
+                            "workspace", "objective", "variables", "function", "motion", "tubes"}) {
     if (resolved.contains(table) && resolved[table].is_object()) {
       for (const auto& [key, value] : resolved[table].items()) {
         settings[fmt::format("{}.{}", table, key)] = value;
       }
+    }
+  }
+  for (const char* tables : {"obstacle", "requirement"}) {
+    if (resolved.contains(tables)) {
+      settings[tables] = resolved[tables];
     }
   }
   if (resolved.contains("function")) {
@@ -107,6 +112,15 @@ std::map<std::string, json> list_settings(const json& resolved) {
 
 // Returns the value as TOML, but a single word without quotes.
 std::string write_value(const json& value) {
+  if (value.is_array() || value.is_object()) {
+    std::vector<std::string> parts;
+    for (const auto& [key, part] : value.items()) {
+      const std::string text = part.is_string() ? part.dump() : write_value(part);
+      parts.push_back(value.is_object() ? key + "=" + text : text);
+    }
+    const std::string inside = join(parts, ",");
+    return value.is_object() ? "{" + inside + "}" : "[" + inside + "]";
+  }
   if (!value.is_string()) {
     return value.dump();
   }
