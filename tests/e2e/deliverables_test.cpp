@@ -314,5 +314,33 @@ TEST_F(Deliverables, StretchedLinksAreNoUrdf) {
                     HasSubstr("motors' masses, 100 N m/kg")));
 }
 
+// A co-design of tubes: the winner's file has them, is judged again, and is no URDF.
+TEST_F(Deliverables, TubesAreDesignedJudgedAndNoUrdf) {
+  const std::vector<std::string> tubes = {
+      "--set", "tubes.diameter_m=[0.25,0.2,0.18,0.15]",
+      "--set", "tubes.wall_m=[0.006]",
+      "--set", "tubes.diameter_bounds_m=[0.08,0.35]",
+      "--set", "tubes.wall_bounds_m=[0.002,0.012]",
+      "--set", "tubes.deflection_limit_m=0.002",
+      "--set", R"(variables.optimize=["gains","length_scale","tube_diameter","tube_wall"])",
+      "--set", "sets.validation_cases=1",
+      "--set", "sets.test_cases=1"};
+  std::vector<std::string> arguments = {"co-design", "--budget", "70"};
+  arguments.insert(arguments.end(), tubes.begin(), tubes.end());
+  optimize("tubes", arguments);
+  EXPECT_THAT(read_text(path("tubes/winner.toml")),
+              AllOf(HasSubstr("tube_diameter_m = 0."), HasSubstr("tube_wall_m = 0.")));
+  EXPECT_THAT(read_text(path("tubes/result.json")), HasSubstr("\"deflection\""));
+  expect_refused({"export", "tubes", "--format", "urdf"}, 2, HasSubstr("links are tubes"));
+  std::vector<std::string> judge = {"evaluate",  "tubes/winner.toml", "--problem",
+                                    "co-design", "--cases",           "1"};
+  judge.insert(judge.end(), tubes.begin(), tubes.end());
+  const Outcome judged = run(judge);
+  EXPECT_EQ(judged.exit_code, 0) << judged.err;
+  // The problem without tubes does not know their material.
+  expect_refused({"evaluate", "tubes/winner.toml", "--problem", "co-design", "--cases", "1"}, 2,
+                 HasSubstr("add [tubes] to it"));
+}
+
 }  // namespace
 }  // namespace armwright

@@ -18,7 +18,7 @@ bool same(const ArmDesign& a, const ArmDesign& b) {
          std::ranges::equal(a.joints, b.joints, [](const JointDrive& one, const JointDrive& other) {
            return one.gains == other.gains && one.limits.min == other.limits.min &&
                   one.limits.max == other.limits.max && one.length_scale == other.length_scale &&
-                  one.section_scale == other.section_scale;
+                  one.section_scale == other.section_scale && one.tube == other.tube;
          });
 }
 

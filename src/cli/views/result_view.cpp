@@ -210,6 +210,11 @@ std::string format_design(const DesignFile& design, const Style& style) {
     columns.push_back({"length"});
     columns.push_back({"section"});
   }
+  const bool tubes = has_tubes(design.design);
+  if (tubes) {
+    columns.push_back({"diameter [m]"});
+    columns.push_back({"wall [m]"});
+  }
   Table table(std::move(columns));
   for (std::size_t i = 0; i < design.design.joints.size(); ++i) {
     const JointDrive& joint = design.design.joints[i];
@@ -222,6 +227,10 @@ std::string format_design(const DesignFile& design, const Style& style) {
     if (stretched) {
       cells.push_back(format_significant(joint.length_scale, 4));
       cells.push_back(format_significant(joint.section_scale, 4));
+    }
+    if (tubes) {
+      cells.push_back(format_significant(joint.tube.diameter_m, 4));
+      cells.push_back(format_significant(joint.tube.wall_m, 4));
     }
     table.add_row(std::move(cells));
   }

@@ -44,6 +44,12 @@ const Setting<double> kDriveLengthScale{"length_scale", kScaleRange, 1,
                                         "factor on the length of the link that the joint moves"};
 const Setting<double> kDriveSectionScale{"section_scale", kScaleRange, 1,
                                          "factor on the cross-section of that link"};
+constexpr Range kTubeSize{.lower = 0, .upper = 100, .lower_open = true};
+const Setting<double> kDriveTubeDiameter{
+    "tube_diameter_m", kTubeSize, kNoDefault,
+    "outer diameter of that link, for problems with [tubes] (default: that of the problem)"};
+const Setting<double> kDriveTubeWall{"tube_wall_m", kTubeSize, kNoDefault,
+                                     "wall of that tube, at most half of its diameter"};
 
 const Setting<std::string> kPublishedLabel{"label", kNoDefault,
                                            "name of this published result in tables"};
@@ -89,10 +95,11 @@ const Setting<double>& find_gain_setting(const controllers::Gain& gain) {
 
 const SettingTable& get_drive_settings() {
   static const SettingTable settings = [] {
-    SettingTable table{.key = "joint",
-                       .is_array = true,
-                       .settings = {&kDriveName, &kDriveEffortMin, &kDriveEffortMax,
-                                    &kDriveLengthScale, &kDriveSectionScale}};
+    SettingTable table{
+        .key = "joint",
+        .is_array = true,
+        .settings = {&kDriveName, &kDriveEffortMin, &kDriveEffortMax, &kDriveLengthScale,
+                     &kDriveSectionScale, &kDriveTubeDiameter, &kDriveTubeWall}};
     for (const Setting<double>& gain : get_gain_settings()) {
       table.settings.push_back(&gain);
     }
@@ -151,6 +158,18 @@ JointDrive read_drive(const ConfigTable& joint, const ControllerRow& controller)
   drive.limits.max = joint.get(kDriveEffortMax);
   drive.length_scale = joint.get(kDriveLengthScale);
   drive.section_scale = joint.get(kDriveSectionScale);
+  const auto diameter_m = joint.find(kDriveTubeDiameter), wall_m = joint.find(kDriveTubeWall);
+  if (diameter_m.has_value() != wall_m.has_value()) {
+    joint.refuse(diameter_m ? kDriveTubeWall : kDriveTubeDiameter,
+                 "a tube has tube_diameter_m and tube_wall_m; give both or neither");
+  }
+  if (diameter_m) {
+    drive.tube = {*diameter_m, *wall_m};
+    if (2 * *wall_m > *diameter_m) {
+      joint.refuse(kDriveTubeWall,
+                   fmt::format("it must be at most {:g}, the radius of the tube", *diameter_m / 2));
+    }
+  }
   return drive;
 }
 
@@ -242,6 +261,10 @@ std::string to_toml(const DesignFile& file) {
     }
     if (joint.section_scale != 1) {
       text += fmt::format("section_scale = {}\n", format_exact(joint.section_scale));
+    }
+    if (joint.tube.diameter_m > 0) {
+      text += fmt::format("tube_diameter_m = {}\ntube_wall_m = {}\n",
+                          format_exact(joint.tube.diameter_m), format_exact(joint.tube.wall_m));
     }
   }
   return text;

@@ -1,4 +1,4 @@
-// Reads problems of the kind motion: [motion], its points and [tubes].
+// Reads problems of the kind motion: [motion] and its points.
 
 #include <fmt/format.h>
 
@@ -101,41 +101,6 @@ const SettingTable kMotionPointSettings{
     .key = "point",
     .is_array = true,
     .settings = {&kPointJoints, &kPointTool, &kPointToolRpy, &kPointFile, &kPointFree}};
-
-const Setting<double> kYoungsModulus{"youngs_modulus_pa",
-                                     {.lower = 1e6, .upper = 1e13},
-                                     TubeMaterial{}.youngs_modulus_pa,
-                                     "of the tubes' material (default: aluminium)"};
-const Setting<double> kTubeDensity{"density_kg_per_m3",
-                                   {.lower = 1, .upper = 30'000},
-                                   TubeMaterial{}.density_kg_per_m3,
-                                   "of the tubes' material (default: aluminium)"};
-const Setting<std::vector<double>> kDiameters{
-    "diameter_m", kSize_m, kNoDefault, "outer diameters of the tubes, one number or one per link"};
-const Setting<std::vector<double>> kWalls{"wall_m", kSize_m, kNoDefault,
-                                          "walls of the tubes, in the same way"};
-const Setting<std::vector<double>> kLengthBounds{
-    "length_bounds_m", kSize_m, kNoDefault,
-    "least and largest length of each link, which is then a variable (default: as in the robot)"};
-const Setting<std::vector<double>> kDiameterBounds{
-    "diameter_bounds_m", kSize_m, kNoDefault, "the same of the outer diameters (default: fixed)"};
-const Setting<std::vector<double>> kWallBounds{"wall_bounds_m", kSize_m, kNoDefault,
-                                               "the same of the walls (default: fixed)"};
-const Setting<double> kDeflectionLimit{
-    "deflection_limit_m", kSize_m, kNoDefault,
-    "how far the tip of the stretched arm may sag under gravity across it (default: no limit)"};
-
-std::optional<MotionBounds> read_bounds(const ConfigTable& table,
-                                        const Setting<std::vector<double>>& setting) {
-  const auto values = table.find(setting);
-  if (!values) {
-    return std::nullopt;
-  }
-  if (values->size() != 2 || (*values)[0] >= (*values)[1]) {
-    table.refuse(setting, "it must be two numbers, the smaller one first");
-  }
-  return MotionBounds{(*values)[0], (*values)[1]};
-}
 
 constexpr std::size_t kMostFilePoints = 200;
 
@@ -309,38 +274,6 @@ void check_start(const std::vector<ConfigTable>& tables, const MotionConfig& con
   }
 }
 
-void read_tubes(const ConfigTable& table, MotionConfig& config) {
-  const std::size_t links = config.robot.joint_count();
-  MotionTubes& tubes = config.tubes;
-  tubes.material = {table.get(kYoungsModulus), table.get(kTubeDensity)};
-  const std::vector<double> diameters = read_per_joint(table, kDiameters, links);
-  const std::vector<double> walls = read_per_joint(table, kWalls, links);
-  tubes.length_m = read_bounds(table, kLengthBounds);
-  tubes.diameter_m = read_bounds(table, kDiameterBounds);
-  tubes.wall_m = read_bounds(table, kWallBounds);
-  config.deflection_limit_m = table.find(kDeflectionLimit);
-  for (std::size_t link = 0; link < links; ++link) {
-    const double thinnest = tubes.diameter_m ? tubes.diameter_m->lower : diameters[link];
-    const double thickest = tubes.wall_m ? tubes.wall_m->upper : walls[link];
-    if (2 * walls[link] > diameters[link] || 2 * thickest > thinnest) {
-      const bool at_start = 2 * walls[link] > diameters[link];
-      table.refuse(
-          at_start || !tubes.wall_m ? kWalls.key : kWallBounds.key,
-          fmt::format("the wall of link '{}' can be {:g} m, thicker than the radius of its tube, "
-                      "{:g} m; make it thinner",
-                      sanitize(config.robot.links[link].name), at_start ? walls[link] : thickest,
-                      (at_start ? diameters[link] : thinnest) / 2));
-    }
-    if (get_link_length_m(config.robot, link) == 0) {
-      table.refuse(kDiameters,
-                   fmt::format("the link '{}' has no length: the next joint lies in its "
-                               "own; only links with a length can be tubes",
-                               sanitize(config.robot.links[link].name)));
-    }
-    tubes.tubes.push_back({diameters[link], walls[link]});
-  }
-}
-
 void read_motion_objective(const ConfigTable& table, MotionConfig& config) {
   config.is_front = table.get_or(kObjectiveKind.among({"sum", "front"}), "sum") == "front";
   config.objective = read_quantities(table, table.get_or(kObjectiveQuantities, {"duration"}),
@@ -385,10 +318,6 @@ const SettingTable kMotionSettings{.key = "motion",
                                                 &kPayloadMass,
                                                 &kPayloadCom},
                                    .tables = {&kMotionPointSettings}};
-const SettingTable kTubeSettings{
-    .key = "tubes",
-    .settings = {&kYoungsModulus, &kTubeDensity, &kDiameters, &kWalls, &kLengthBounds,
-                 &kDiameterBounds, &kWallBounds, &kDeflectionLimit}};
 
 void load_motion(const ConfigTable& table, LoadedProblem& loaded) {
   MotionConfig config;
@@ -454,9 +383,7 @@ void load_motion(const ConfigTable& table, LoadedProblem& loaded) {
     its.refuse(kLongestInterval, fmt::format("it must be above motion.shortest_interval_s, {:g} s",
                                              config.interval_s.lower));
   }
-  if (table.has(kTubeSettings.key)) {
-    read_tubes(table.get_table(kTubeSettings), config);
-  }
+  config.tubes = read_tubes(table, config.robot);
   config.clearance = read_clearance(table, urdf, its.get(kSelfClearance), config.robot, loaded);
   if (config.least_clearance_m && !config.clearance) {
     its.refuse(kLeastClearance,

@@ -27,6 +27,7 @@
 #include "sim/engines/engine_table.hpp"
 #include "sim/identification/fitted_plant.hpp"
 #include "sim/kinematics/arm_clearance.hpp"
+#include "sim/robot/tube.hpp"
 
 namespace armwright {
 
@@ -151,9 +152,21 @@ std::shared_ptr<const ArmClearance> read_clearance(const ConfigTable& table,
 void read_task_clearance(const ConfigTable& table, const std::filesystem::path& urdf,
                          TrackingConfig& config, LoadedProblem& loaded);
 
-// motion_reader.cpp: [motion] and [tubes]: a motion that is planned
+// tube_reader.cpp: [tubes], of which an arm is made
 
-extern const SettingTable kMotionSettings, kTubeSettings;
+extern const SettingTable kTubeSettings;
+// Returns the bounds that a setting gives. Refuses other lists than two ascending numbers.
+std::optional<VariableBounds> read_bounds(const ConfigTable& table,
+                                          const Setting<std::vector<double>>& setting);
+// Reads the tubes of the problem's root table. Returns none if it has no [tubes]. Refuses walls that
+// are, or can become, thicker than the radius.
+ArmTubes read_tubes(const ConfigTable& root, const RobotModel& robot);
+// Reads the tubes of a tracking problem, and makes the links of config.robot such tubes.
+void read_task_tubes(const ConfigTable& table, TrackingConfig& config);
+
+// motion_reader.cpp: [motion]: a motion that is planned
+
+extern const SettingTable kMotionSettings;
 // Sets the problem, its single case and the hashes of its inputs. Throws Error{bad_data} if the arm
 // cannot reach a point.
 void load_motion(const ConfigTable& table, LoadedProblem& loaded);

@@ -423,6 +423,7 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   if (read.fitted) {
     config.fitted_plant = std::make_shared<FittedPlant>(*std::move(read.fitted));
   }
+  read_task_tubes(table, config);  // before shares of the inertia that joints move are taken
   scale_plants_of(robot, config);
   config.own_effort_limits = robot.get(kRobotDynamics);
 

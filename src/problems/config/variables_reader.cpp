@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <tuple>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -35,8 +37,8 @@ constexpr Range kFactor{.lower = 1, .upper = 100, .lower_open = true};
 const Setting<std::vector<std::string>> kVariablesOptimize{
     "optimize", kNoDefault,
     "decision variables of every joint: gains for all gains, names of single gains of the "
-    "controller, effort_min, effort_max, length_scale, section_scale (default: gains, effort_min "
-    "and effort_max)"};
+    "controller, effort_min, effort_max, length_scale, section_scale, and with [tubes] "
+    "tube_diameter and tube_wall (default: gains, effort_min and effort_max)"};
 const Setting<std::vector<std::string>> kVariablesTask{
     "task", kNoDefault, "[\"speed\"]: the nominal speed is a decision variable too"};
 const Setting<double> kVariablesBounds{
@@ -111,8 +113,62 @@ void apply_controller(const ConfigTable& control, TrackingConfig& config) {
   config.task.feed_forward = find_controller(config.start.controller).feed_forward;
 }
 
+// Refuses names of sizes that the problem's links do not have, and of sizes without bounds.
+void check_tube_name(const ConfigTable& table, const AnySetting& optimize, const std::string& name,
+                     const ArmTubes& tubes) {
+  const bool is_wall = name == "tube_wall";
+  if (!tubes.tubes.empty() && name == "section_scale") {
+    table.refuse(optimize,
+                 "the links are tubes ([tubes]), so that section_scale cannot be a variable; "
+                 "tube_diameter and tube_wall take its place");
+  }
+  if (name != "tube_diameter" && !is_wall) {
+    return;
+  }
+  if (tubes.tubes.empty()) {
+    table.refuse(optimize,
+                 fmt::format("the links are no tubes; add [tubes], or leave out '{}'", name));
+  }
+  if (!(is_wall ? tubes.wall_m : tubes.diameter_m)) {
+    table.refuse(optimize, fmt::format("'{}' has no bounds; add tubes.{}", name,
+                                       is_wall ? "wall_bounds_m" : "diameter_bounds_m"));
+  }
+}
+
+// Refuses bounds of sizes that are no variables, and walls of the start that are, or can become,
+// thicker than the radius. read_tubes() checks those of [tubes].
+void check_tube_bounds(const ConfigTable& table, const TrackingConfig& config) {
+  using Kind = DesignParameter::Kind;
+  const std::tuple<const std::optional<VariableBounds>&, Kind, const char*, const char*> rows[] = {
+      {config.tubes.diameter_m, Kind::tube_diameter, "tube_diameter", "diameter_bounds_m"},
+      {config.tubes.wall_m, Kind::tube_wall, "tube_wall", "wall_bounds_m"}};
+  for (const auto& [bounds, kind, name, key] : rows) {
+    if (bounds && std::ranges::find(config.parameters, kind, &DesignParameter::kind) ==
+                      config.parameters.end()) {
+      table.refuse(kVariablesOptimize,
+                   fmt::format("tubes.{0} bounds '{1}', which is no variable; add '{1}', or leave "
+                               "out tubes.{0}",
+                               key, name));
+    }
+  }
+  const ArmTubes& tubes = config.tubes;
+  for (std::size_t i = 0; i < tubes.tubes.size(); ++i) {
+    const Tube& tube = config.start.joints[i].tube;
+    const double thickest = tubes.wall_m ? tubes.wall_m->upper : tube.wall_m;
+    const double thinnest = tubes.diameter_m ? tubes.diameter_m->lower : tube.diameter_m;
+    if (2 * thickest > thinnest) {
+      table.refuse(
+          kVariablesStart,
+          fmt::format("the wall of link '{}' can be {:g} m, thicker than the radius of its "
+                      "tube, {:g} m; make it thinner in the design, or change the bounds "
+                      "in [tubes]",
+                      sanitize(config.robot.links[i].name), thickest, thinnest / 2));
+    }
+  }
+}
+
 // Returns the numbers of the design that are decision variables, in the order of the decision
-// vector: joint by joint the gains, effort limits and scales, last the speed.
+// vector: joint by joint the gains, effort limits, scales and sizes of tubes, last the speed.
 std::vector<DesignParameter> read_parameters(const ConfigTable& table,
                                              const TrackingConfig& config) {
   const ControllerRow& controller = find_controller(config.start.controller);
@@ -123,7 +179,7 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
   const std::vector<std::string> gains = valid;
   valid.insert(valid.end(), {"effort_min", "effort_max"});
   const std::vector<std::string> drives = valid;
-  valid.insert(valid.end(), {"length_scale", "section_scale"});
+  valid.insert(valid.end(), {"length_scale", "section_scale", "tube_diameter", "tube_wall"});
   const auto read_names = [&](const ConfigTable& where,
                               const Setting<std::vector<std::string>>& optimize) {
     std::vector<std::string> names;
@@ -140,6 +196,7 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
         known.insert(known.end(), valid.begin(), valid.end());
         where.refuse(optimize, describe_unknown("design parameter", *name, known));
       }
+      check_tube_name(where, optimize, *name, config.tubes);
       if (std::find(names.begin(), name, *name) != name) {
         where.refuse(optimize, fmt::format("'{}' stands there twice; name it once", *name));
       }
@@ -182,8 +239,9 @@ std::vector<DesignParameter> read_parameters(const ConfigTable& table,
       DesignParameter parameter;
       parameter.joint = joint;
       constexpr std::array kOthers = {
-          DesignParameter::Kind::effort_min, DesignParameter::Kind::effort_max,
-          DesignParameter::Kind::length_scale, DesignParameter::Kind::section_scale};
+          DesignParameter::Kind::effort_min,    DesignParameter::Kind::effort_max,
+          DesignParameter::Kind::length_scale,  DesignParameter::Kind::section_scale,
+          DesignParameter::Kind::tube_diameter, DesignParameter::Kind::tube_wall};
       parameter.kind = i < gains.size() ? DesignParameter::Kind::gain : kOthers[i - gains.size()];
       parameter.gain = i;
       parameters.push_back(parameter);
@@ -249,7 +307,13 @@ void read_variables(const ConfigTable& variables, const ConfigTable& control,
     variables.refuse(kVariablesStart, error.what());
   }
   apply_controller(control, config);
+  for (std::size_t i = 0; i < config.tubes.tubes.size(); ++i) {
+    if (config.start.joints[i].tube.diameter_m == 0) {
+      config.start.joints[i].tube = config.tubes.tubes[i];
+    }
+  }
   config.parameters = read_parameters(variables, config);
+  check_tube_bounds(variables, config);
   config.length_bounds_factor = variables.get(kVariablesLengthBounds);
   config.section_bounds_factor = variables.get(kVariablesSectionBounds);
   config.speed_bounds_factor = variables.get(kVariablesSpeedBounds);

@@ -27,7 +27,7 @@ std::shared_ptr<const RobotModel> MotionProblem::make_arm(std::span<const double
     return robot_;
   }
   RobotModel robot = *robot_;
-  const MotionTubes& its = config_.tubes;
+  const ArmTubes& its = config_.tubes;
   tubes = its.tubes;
   const std::size_t numbers = tubes.size() * ((its.length_m ? 1U : 0U) +
                                               (its.diameter_m ? 1U : 0U) + (its.wall_m ? 1U : 0U));
@@ -42,10 +42,7 @@ std::shared_ptr<const RobotModel> MotionProblem::make_arm(std::span<const double
     tubes[link].wall_m = its.wall_m ? *next++ : tubes[link].wall_m;
   }
   for (std::size_t link = 0; link < tubes.size(); ++link) {
-    // A wall of more than the radius is a bar; the wall's constraint says how far it is off.
-    Tube made = tubes[link];
-    made.wall_m = std::min(made.wall_m, made.diameter_m / 2);
-    make_tube(robot, link, made, its.material);
+    make_tube(robot, link, tubes[link], its.material);
   }
   return std::make_shared<const RobotModel>(std::move(robot));
 }
@@ -317,9 +314,9 @@ void MotionProblem::make_constraints(AssessedPlan& plan) const {
     plan.constraints.push_back((*config_.least_clearance_m - plan.nearest.distance_m) /
                                arm_length_m_);
   }
-  if (config_.deflection_limit_m) {
+  if (config_.tubes.deflection_limit_m) {
     plan.constraints.push_back(
-        plan.quantity(MotionQuantity::deflection) / *config_.deflection_limit_m - 1);
+        plan.quantity(MotionQuantity::deflection) / *config_.tubes.deflection_limit_m - 1);
   }
 }
 

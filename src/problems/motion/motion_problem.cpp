@@ -112,7 +112,7 @@ MotionProblem::MotionProblem(MotionConfig config)
   }
   for (const auto& [name, limit] : {std::pair{"tool_speed", config_.tool_speed_limit_m_per_s},
                                     std::pair{"clearance", config_.least_clearance_m},
-                                    std::pair{"deflection", config_.deflection_limit_m}}) {
+                                    std::pair{"deflection", config_.tubes.deflection_limit_m}}) {
     if (limit) {
       description_.constraints.push_back({name, ""});
     }
@@ -149,7 +149,7 @@ void MotionProblem::make_variables(const Eigen::MatrixXd& start) {
   auto& variables = description_.variables;
   const std::size_t intervals = count_intervals();
   for (std::size_t joint = 0; is_line() && joint < robot_->joint_count(); ++joint) {
-    const MotionBounds& bounds = config_.effort_share;
+    const VariableBounds& bounds = config_.effort_share;
     variables.push_back({.name = robot_->joints[joint].name + ".effort_share",
                          .unit = "1",
                          .lower = bounds.lower,
@@ -174,7 +174,7 @@ void MotionProblem::make_variables(const Eigen::MatrixXd& start) {
       const double speed = config_.limits.speed[joint];
       time_s = std::max(time_s, way / (std::isfinite(speed) ? speed : 1));
     }
-    const MotionBounds& bounds = config_.interval_s;
+    const VariableBounds& bounds = config_.interval_s;
     variables.push_back(
         {.name = fmt::format("interval_{}", i + 1),
          .unit = "s",
@@ -201,9 +201,9 @@ void MotionProblem::make_variables(const Eigen::MatrixXd& start) {
                                upper)});
     }
   }
-  const MotionTubes& tubes = config_.tubes;
+  const ArmTubes& tubes = config_.tubes;
   for (std::size_t link = 0; link < tubes.tubes.size(); ++link) {
-    const auto add = [&](const char* what, const std::optional<MotionBounds>& bounds,
+    const auto add = [&](const char* what, const std::optional<VariableBounds>& bounds,
                          double value) {
       if (bounds) {
         variables.push_back({.name = fmt::format("{}.{}", robot_->links[link].name, what),

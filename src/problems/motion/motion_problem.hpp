@@ -74,17 +74,6 @@ struct MotionPoint {
   bool has_turn = false;  // whether the tool's orientation counts
 };
 
-// The bounds of a variable; both the same: it is no variable.
-struct MotionBounds {
-  double lower = 0, upper = 0;
-};
-
-struct MotionTubes {
-  TubeMaterial material;
-  std::vector<Tube> tubes;  // one per link; empty: links keep the masses of the robot's file
-  std::optional<MotionBounds> length_m, diameter_m, wall_m;
-};
-
 struct MotionConfig {
   std::string name, summary;
   RobotModel robot;
@@ -93,16 +82,16 @@ struct MotionConfig {
   std::vector<MotionPoint> points;  // at least two; the first and the last are not free
   std::vector<double> home;         // where the inverse kinematics of tools' poses begins
   std::vector<double> intervals_s;  // empty: variables
-  MotionBounds interval_s{0.02, 20};
-  MotionBounds effort_share{0.1, 1};  // of the curve `line`
-  JointLimits limits;                 // one number per joint, infinite where there is none
+  VariableBounds interval_s{0.02, 20};
+  VariableBounds effort_share{0.1, 1};  // of the curve `line`
+  JointLimits limits;                   // one number per joint, infinite where there is none
   bool limits_range = true;
-  std::optional<double> tool_speed_limit_m_per_s, least_clearance_m, deflection_limit_m;
+  std::optional<double> tool_speed_limit_m_per_s, least_clearance_m;
   std::vector<WeightedQuantity> objective{WeightedQuantity{}};  // of MotionQuantity
   bool is_front = false;
   std::size_t samples = 201;
   std::shared_ptr<const ArmClearance> clearance;  // null: there is nothing to stay clear of
-  MotionTubes tubes;
+  ArmTubes tubes;
 };
 
 // A motion, and what was found of it.

@@ -20,6 +20,10 @@ double& get_parameter(ArmDesign& design, const DesignParameter& parameter) {
       return joint.length_scale;
     case DesignParameter::Kind::section_scale:
       return joint.section_scale;
+    case DesignParameter::Kind::tube_diameter:
+      return joint.tube.diameter_m;
+    case DesignParameter::Kind::tube_wall:
+      return joint.tube.wall_m;
     case DesignParameter::Kind::speed:
       return design.speed_m_per_s.value();
     case DesignParameter::Kind::gain:
@@ -44,6 +48,8 @@ double get_bounds_factor(const TrackingConfig& config, const DesignParameter& pa
     case DesignParameter::Kind::gain:
     case DesignParameter::Kind::effort_min:
     case DesignParameter::Kind::effort_max:
+    case DesignParameter::Kind::tube_diameter:
+    case DesignParameter::Kind::tube_wall:
       break;
   }
   return config.bounds_factor;
@@ -52,7 +58,9 @@ double get_bounds_factor(const TrackingConfig& config, const DesignParameter& pa
 bool changes_links(const TrackingConfig& config) {
   return std::ranges::any_of(config.parameters, [](const DesignParameter& parameter) {
     return parameter.kind == DesignParameter::Kind::length_scale ||
-           parameter.kind == DesignParameter::Kind::section_scale;
+           parameter.kind == DesignParameter::Kind::section_scale ||
+           parameter.kind == DesignParameter::Kind::tube_diameter ||
+           parameter.kind == DesignParameter::Kind::tube_wall;
   });
 }
 
@@ -64,6 +72,10 @@ bool changes_speed(const TrackingConfig& config) {
 
 bool has_mass_metric(const TrackingConfig& config) {
   return config.torque_per_mass_n_m_per_kg > 0 || changes_links(config);
+}
+
+bool has_deflection_metric(const TrackingConfig& config) {
+  return !config.tubes.tubes.empty();
 }
 
 bool has_duration_metric(const TrackingConfig& config) {
@@ -137,6 +149,25 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
       variable.name = joint + ".section_scale";
       variable.unit = "1";
       break;
+    case DesignParameter::Kind::tube_diameter:
+    case DesignParameter::Kind::tube_wall: {
+      const bool is_wall = parameter.kind == DesignParameter::Kind::tube_wall;
+      const VariableBounds& bounds =
+          (is_wall ? config.tubes.wall_m : config.tubes.diameter_m).value();
+      variable.name = joint + (is_wall ? ".tube_wall" : ".tube_diameter");
+      variable.unit = "m";
+      variable.lower = bounds.lower;
+      variable.upper = bounds.upper;
+      if (variable.start < bounds.lower || variable.start > bounds.upper) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} starts at {:g} m, outside of tubes.{}, {:g} to {:g} m; give it "
+                                "another value in the design or change the bounds",
+                                variable.name, variable.start,
+                                is_wall ? "wall_bounds_m" : "diameter_bounds_m", bounds.lower,
+                                bounds.upper));
+      }
+      return variable;
+    }
     case DesignParameter::Kind::speed:
       variable.name = "task.speed";
       variable.unit = "m/s";
@@ -228,12 +259,18 @@ ProblemDescription make_tracking_description(const TrackingConfig& config) {
   if (has_mass_metric(config)) {
     description.metrics.push_back({"moving_mass", "kg"});
   }
+  if (has_deflection_metric(config)) {
+    description.metrics.push_back({"deflection", "m"});
+  }
   for (const Joint& joint : config.robot.joints) {
     const std::string unit = get_joint_unit("N m", joint.kind);
     description.metrics.push_back({joint.name + ".peak_effort", unit});
     description.metrics.push_back({joint.name + ".rms_effort", unit});
   }
   const bool objective_has_limit = !description.limits.empty();
+  if (config.tubes.deflection_limit_m) {
+    description.limits.push_back({{"deflection", "m"}, *config.tubes.deflection_limit_m});
+  }
   describe_requirements(config.requirements, config.robot, description);
   if (!description.limits.empty() && !objective_has_limit && !objective.logarithm &&
       !objective.is_sum() && objective.kind != TrackingObjective::Kind::front) {

@@ -11,6 +11,7 @@
 #include "problems/tracking/perturbation.hpp"
 #include "problems/tracking/requirement.hpp"
 #include "problems/tracking/tracking_objective.hpp"
+#include "sim/robot/tube.hpp"
 #include "sim/tracking/design.hpp"
 #include "sim/tracking/physics_engine.hpp"
 #include "sim/tracking/task.hpp"
@@ -33,7 +34,16 @@ struct EnginePair {
 
 // A number of the design that is a decision variable.
 struct DesignParameter {
-  enum class Kind { gain, effort_min, effort_max, length_scale, section_scale, speed };
+  enum class Kind {
+    gain,
+    effort_min,
+    effort_max,
+    length_scale,
+    section_scale,
+    tube_diameter,
+    tube_wall,
+    speed
+  };
   std::size_t joint = 0;  // unused for the speed
   Kind kind = Kind::gain;
   std::size_t gain = 0;  // for a gain: its index among the controller's gains
@@ -52,6 +62,7 @@ struct TrackingConfig {
   std::shared_ptr<const FittedPlant> fitted_plant;  // what the plant's file leaves uncertain
   double mass_scale = 1;  // the factor that all masses were multiplied by when the robot was loaded
   PlantScales plant_scales;  // likewise, of the robot's joints
+  ArmTubes tubes;            // of which the robot's links are made; a design may have other ones
   TrackingTask task;
   WorkspaceSphere workspace;
   std::optional<TestCase> path;  // replaces the cases that are generated in the workspace
@@ -80,7 +91,8 @@ double& get_parameter(ArmDesign& design, const DesignParameter& parameter);
 
 // Returns true for the two effort limits.
 bool is_effort(const DesignParameter& parameter);
-// Returns the parameter's factor: its bounds are the start value divided by it and times it.
+// Returns the parameter's factor: its bounds are the start value divided by it and times it. Sizes
+// of tubes have bounds of their own instead.
 double get_bounds_factor(const TrackingConfig& config, const DesignParameter& parameter);
 
 // Return true if a decision variable changes the links or the speed.
@@ -94,10 +106,11 @@ std::vector<double> list_moves_m(const TrackingConfig& config);
 // periods is not included.
 double calc_case_duration_s(const TrackingConfig& config, const TrackingTask& task);
 
-// Return true if evaluations have the metrics "duration" and "moving_mass". Other problems do not
-// have them, so that their records stay the same.
+// Return true if evaluations have the metrics "duration", "moving_mass" and "deflection". Other
+// problems do not have them, so that their records stay the same.
 bool has_duration_metric(const TrackingConfig& config);
 bool has_mass_metric(const TrackingConfig& config);
+bool has_deflection_metric(const TrackingConfig& config);
 
 // Throws Error{usage} if a variable has no bounds because it starts at 0, starts beyond the joint's
 // effort limit, or spans more than floating-point numbers can hold.

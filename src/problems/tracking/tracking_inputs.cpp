@@ -39,20 +39,43 @@ void TrackingInputs::forget_cases() const {
   plants_.clear();
 }
 
+ArmDesign TrackingInputs::complete(ArmDesign design) const {
+  for (std::size_t i = 0; i < config_.tubes.tubes.size(); ++i) {
+    if (design.joints[i].tube.diameter_m == 0) {
+      design.joints[i].tube = config_.tubes.tubes[i];
+    }
+  }
+  return design;
+}
+
 RobotModel TrackingInputs::make_robot(const ArmDesign& design) const {
-  return armwright::make_robot(config_.robot, design, config_.torque_per_mass_n_m_per_kg);
+  return armwright::make_robot(config_.robot, complete(design), config_.torque_per_mass_n_m_per_kg,
+                               config_.tubes.material);
+}
+
+bool TrackingInputs::has_own_links(const ArmDesign& design) const {
+  if (is_stretched(design)) {
+    return true;
+  }
+  for (std::size_t i = 0; i < config_.tubes.tubes.size(); ++i) {
+    const Tube& tube = design.joints[i].tube;
+    if (tube.diameter_m > 0 && tube != config_.tubes.tubes[i]) {
+      return true;
+    }
+  }
+  return false;
 }
 
 TrackingTask TrackingInputs::make_task(const ArmDesign& design) const {
   TrackingTask task = armwright::make_task(config_.task, design);
-  if (task.clearance && is_stretched(design)) {
-    task.clearance = make_clearance(*task.clearance, config_.robot, design);
+  if (task.clearance && has_own_links(design)) {
+    task.clearance = make_clearance(*task.clearance, config_.robot, complete(design));
   }
   return task;
 }
 
 std::shared_ptr<const TrackingSetup> TrackingInputs::get_setup(const ArmDesign& design) const {
-  if (!is_stretched(design) && config_.torque_per_mass_n_m_per_kg == 0 && !design.speed_m_per_s) {
+  if (!has_own_links(design) && config_.torque_per_mass_n_m_per_kg == 0 && !design.speed_m_per_s) {
     return setup_;
   }
   return std::make_shared<TrackingSetup>(make_robot(design), make_task(design));
@@ -60,7 +83,7 @@ std::shared_ptr<const TrackingSetup> TrackingInputs::get_setup(const ArmDesign& 
 
 // The mass of motors does not change the targets, but it changes the efforts in their table.
 bool TrackingInputs::has_own_targets(const ArmDesign& design) const {
-  return is_stretched(design) || design.speed_m_per_s ||
+  return has_own_links(design) || design.speed_m_per_s ||
          (config_.torque_per_mass_n_m_per_kg > 0 &&
           (config_.task.feed_forward != FeedForward::none ||
            config_.task.control_start != ControlStart::empty));

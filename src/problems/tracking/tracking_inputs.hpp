@@ -23,7 +23,9 @@ class TrackingInputs {
 
   const TrackingSetup& setup() const { return *setup_; }  // of the nominal arm and task
   const CaseCache<TargetTable>& targets() const { return targets_; }
-  void forget_cases() const;                             // empties both caches
+  void forget_cases() const;  // empties both caches
+  // Returns the design with the tubes of the problem where it has none of its own.
+  ArmDesign complete(ArmDesign design) const;
   RobotModel make_robot(const ArmDesign& design) const;  // without load
   TrackingTask make_task(const ArmDesign& design) const;
   // Returns the setup of a design: the nominal one if the design changes neither arm nor task.
@@ -55,6 +57,7 @@ class TrackingInputs {
                                             std::span<const ArmDesign> directions) const;
 
  private:
+  bool has_own_links(const ArmDesign& design) const;
   bool has_own_targets(const ArmDesign& design) const;
   void check_points(const TargetTable& table, const TestSet& set, std::uint64_t number) const;
   Plant make_plant(const TestSet& set, std::uint64_t number) const;

@@ -84,6 +84,7 @@ std::vector<ArmDesign> make_directions(const TrackingConfig& config) {
     joint.limits = {};
     joint.length_scale = 0;
     joint.section_scale = 0;
+    joint.tube = {};
   }
   if (zero.speed_m_per_s) {
     zero.speed_m_per_s = 0;
@@ -112,11 +113,11 @@ void TrackingProblem::check_bounds() const {
   }
   // Tests each variable at either bound, with the others at the start. Links are stretched
   // independently of each other, so this finds every link that cannot be stretched that far.
-  for (const DesignParameter& parameter : config_.parameters) {
-    const double factor = get_bounds_factor(config_, parameter);
-    for (const double scale : {1 / factor, factor}) {
+  for (std::size_t i = 0; i < config_.parameters.size(); ++i) {
+    const DecisionVariable& variable = description_.variables[i];
+    for (const double bound : {variable.lower, variable.upper}) {
       ArmDesign design = config_.start;
-      get_parameter(design, parameter) *= scale;
+      get_parameter(design, config_.parameters[i]) = bound;
       get_setup(design);
     }
   }
@@ -133,7 +134,7 @@ void TrackingProblem::describe_jacobian() {
   } else if (changes_links(config_) || changes_speed(config_)) {
     advice =
         "variables that change the arm or the task have no derivatives; leave length_scale, "
-        "section_scale and speed out of [variables]";
+        "section_scale, tube_diameter, tube_wall and speed out of [variables]";
   } else if (config_.torque_per_mass_n_m_per_kg > 0 &&
              std::ranges::any_of(config_.parameters, is_effort)) {
     advice =
@@ -167,6 +168,7 @@ void TrackingProblem::check_design(const ArmDesign& design) const {
                     config_.robot.joint_count()));
   }
   check_unactuated(design, config_.robot);
+  check_links(design);
   const ControllerRow& controller = find_controller(design.controller);
   check_interface(controller, config_.task.drives);
   if (controller.feed_forward != FeedForward::none &&
@@ -175,6 +177,26 @@ void TrackingProblem::check_design(const ArmDesign& design) const {
                 fmt::format("the design is for controller '{}', whose feed-forward efforts "
                             "problem {} does not compute; set control.controller to '{}'",
                             controller.name, config_.name, controller.name));
+  }
+}
+
+void TrackingProblem::check_links(const ArmDesign& design) const {
+  const bool is_of_tubes = has_deflection_metric(config_);
+  if (!is_of_tubes && has_tubes(design)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the design makes links tubes (tube_diameter_m), and problem {} does "
+                            "not say of which material: add [tubes] to it",
+                            config_.name));
+  }
+  for (std::size_t i = 0; is_of_tubes && i < design.joints.size(); ++i) {
+    const JointDrive& joint = design.joints[i];
+    if (joint.section_scale != 1) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("the design has section_scale = {:g} for {}, and the links of "
+                              "problem {} are tubes ([tubes]), whose sections follow from "
+                              "tube_diameter_m and tube_wall_m; leave it out",
+                              joint.section_scale, config_.robot.joints[i].name, config_.name));
+    }
   }
 }
 
@@ -213,7 +235,7 @@ std::vector<double> TrackingProblem::make_vector(const ArmDesign& design) const 
                     "those of '{}'; set control.controller to '{}'",
                     design.controller, config_.name, config_.start.controller, design.controller));
   }
-  ArmDesign copy = design;
+  ArmDesign copy = inputs_.complete(design);
   if (changes_speed(config_)) {
     copy.speed_m_per_s = design.speed_m_per_s.value_or(config_.task.speed_m_per_s);
   }
@@ -222,6 +244,14 @@ std::vector<double> TrackingProblem::make_vector(const ArmDesign& design) const 
     x.push_back(get_parameter(copy, parameter));
   }
   return x;
+}
+
+double TrackingProblem::calc_deflection_m(const ArmDesign& design) const {
+  const auto& payload = config_.robot.payload;
+  return armwright::calc_deflection_m(config_.robot, inputs_.complete(design),
+                                      config_.tubes.material,
+                                      config_.task.load_kg + (payload ? payload->mass_kg : 0),
+                                      config_.task.physics.gravity_m_per_s2);
 }
 
 BatchSize TrackingProblem::batch_size(CaseRole role) const {
@@ -426,6 +456,13 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
                                        config_.requirements.size());
   evaluation.objectives = calc_objectives(objective, terms);
   evaluation.constraint_values = calc_constraints(objective, terms);
+  double deflection_m = 0;
+  if (has_deflection_metric(config_)) {
+    deflection_m = calc_deflection_m(design);
+    if (const auto& limit_m = config_.tubes.deflection_limit_m) {
+      evaluation.constraint_values.push_back(deflection_m / *limit_m - 1);
+    }
+  }
   append_constraints(config_.requirements, terms.required, evaluation.constraint_values);
   // A case with an error has residuals if they were asked for and the case was not abandoned.
   const bool has_residuals =
@@ -444,6 +481,9 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   }
   if (has_mass_metric(config_)) {
     evaluation.metrics.push_back(terms.moving_mass_kg);
+  }
+  if (has_deflection_metric(config_)) {
+    evaluation.metrics.push_back(deflection_m);
   }
   for (std::size_t i = 0; i < joints; ++i) {
     evaluation.metrics.push_back(peak_efforts[i]);

@@ -2,7 +2,7 @@
 // follows a moving target. tracking_objective.hpp has the objectives.
 //
 // Decision variables: any of the controllers' gains and effort limits of any joints in natural
-// units, the lengths and widths of links, and the task's speed. A variable is bounded by a factor
+// units, the lengths and sections of links, and the task's speed. A variable is bounded by a factor
 // around its start value, with the same sign, or by a range to either side if the gain has one
 // (controllers::Gain). A number that is not a variable keeps its start value.
 //
@@ -81,9 +81,13 @@ class TrackingProblem final : public Problem {
   // Returns the decision vector of a design; it may lie outside the bounds. Throws Error{usage} if
   // the design is for another robot or another controller.
   std::vector<double> make_vector(const ArmDesign& design) const;
-  // Throws Error{usage} if the design is for another robot, or for a controller whose feed-forward
+  // Throws Error{usage} if the design is for another robot, for links of another kind (tubes or
+  // scaled sections), or for a controller whose feed-forward
   // efforts this problem does not compute.
   void check_design(const ArmDesign& design) const;
+  // Returns how far the tip of the design's stretched arm sags (tube.hpp), with the load at its tip.
+  // The problem must have tubes.
+  double calc_deflection_m(const ArmDesign& design) const;
 
   // Simulates a design on one case as in validation and test: with the judging engine and without
   // cut-off. Throws Error{bad_data} if no point of the case counts, and Error{usage} as
@@ -122,6 +126,7 @@ class TrackingProblem final : public Problem {
                                             std::uint64_t first, std::size_t count,
                                             RecordingOptions recording,
                                             std::span<const Requirement> requirements) const;
+  void check_links(const ArmDesign& design) const;
   void check_bounds() const;  // throws if a design within the bounds is no arm
   void describe_jacobian();
 

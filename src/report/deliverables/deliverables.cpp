@@ -74,10 +74,12 @@ std::vector<std::string> describe_origin(const FinishedArm& arm) {
     lines.push_back(fmt::format("Its motors' masses, {:.6g} N m/kg, came on top of those.",
                                 config.torque_per_mass_n_m_per_kg));
   }
-  if (is_stretched(arm.design)) {
-    lines.push_back(
+  if (is_stretched(arm.design) || has_tubes(arm.design)) {
+    lines.push_back(fmt::format(
         "The winner's links are other ones than those of the URDF: these numbers belong to them "
-        "(length_scale and section_scale in winner.toml).");
+        "({} in winner.toml).",
+        has_tubes(arm.design) ? "length_scale, tube_diameter_m and tube_wall_m"
+                              : "length_scale and section_scale"));
   }
   return lines;
 }
@@ -104,6 +106,14 @@ std::string read_urdf_of(const FinishedArm& arm, const fs::path& file) {
 }
 
 void check_links(const FinishedArm& arm) {
+  if (has_tubes(arm.design)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("{}: the winner's links are tubes, and the export leaves the links of "
+                            "the robot's URDF as they are: change them in CAD, with winner.toml's "
+                            "sizes, and optimize the controllers of the new robot; ros2-control "
+                            "and datasheet can be exported",
+                            sanitize(arm.run.folder.string())));
+  }
   for (std::size_t i = 0; i < arm.design.joints.size(); ++i) {
     const JointDrive& joint = arm.design.joints[i];
     if (joint.length_scale != 1 || joint.section_scale != 1) {

@@ -73,7 +73,8 @@ const TrackingProblem& get_problem(const TrackingProblem& problem, const NamedDe
 
 bool is_same_arm(const ArmDesign& a, const ArmDesign& b) {
   return std::ranges::equal(a.joints, b.joints, [](const JointDrive& one, const JointDrive& other) {
-    return one.length_scale == other.length_scale && one.section_scale == other.section_scale;
+    return one.length_scale == other.length_scale && one.section_scale == other.section_scale &&
+           one.tube == other.tube;
   });
 }
 

@@ -1,5 +1,6 @@
 #include "sim/robot/tube.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -22,8 +23,9 @@ double get_link_length_m(const RobotModel& robot, std::size_t link) {
       .norm();
 }
 
-void make_tube(RobotModel& robot, std::size_t link, const Tube& tube,
+void make_tube(RobotModel& robot, std::size_t link, const Tube& wanted,
                const TubeMaterial& material) {
+  const Tube tube{wanted.diameter_m, std::min(wanted.wall_m, wanted.diameter_m / 2)};
   const bool is_last = link + 1 == robot.joint_count();
   const Eigen::Vector3d end =
       (is_last ? robot.tip_pose : robot.joints[link + 1].origin).translation();

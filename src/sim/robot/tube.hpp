@@ -11,6 +11,7 @@
 //   deflection = sum_i (w_i + phi_i (L_(i+1) + ... + L_n)).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,19 +26,35 @@ struct TubeMaterial {
 
 struct Tube {
   double diameter_m = 0;  // D, outside
-  double wall_m = 0;      // w, below D / 2
+  double wall_m = 0;      // w, at most D / 2
 
+  bool operator==(const Tube&) const = default;
   double bore_m() const { return diameter_m - 2 * wall_m; }  // d
   double section_m2() const;                                 // A
   double second_moment_m4() const;                           // I
+};
+
+// The bounds of a number that is a variable.
+struct VariableBounds {
+  double lower = 0, upper = 0;
+};
+
+// The tubes that an arm is made of, and the bounds (m) of the sizes that are variables.
+struct ArmTubes {
+  TubeMaterial material;
+  std::vector<Tube> tubes;  // one per link; empty: links keep the masses of the robot's file
+  std::optional<VariableBounds> length_m, diameter_m, wall_m;
+  std::optional<double> deflection_limit_m;  // nothing: no limit
 };
 
 // Returns the length (m) of a link: from its joint to the next one, or to the tip.
 double get_link_length_m(const RobotModel& robot, std::size_t link);
 
 // Makes the link a tube between its joint and the next one, with nothing else on it, except that the
-// last link carries the payload of the robot, if it has one. The link's length must be above 0.
-void make_tube(RobotModel& robot, std::size_t link, const Tube& tube, const TubeMaterial& material);
+// last link carries the payload of the robot, if it has one. The link's length must be above 0. A
+// wall above the radius makes a bar.
+void make_tube(RobotModel& robot, std::size_t link, const Tube& wanted,
+               const TubeMaterial& material);
 
 // Returns the deflection (m) of an arm whose links are these tubes, with a point mass at the tip.
 double calc_deflection_m(std::span<const Tube> tubes, std::span<const double> lengths_m,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/controllers/controller.hpp"
+#include "sim/robot/tube.hpp"
 
 namespace armwright {
 
@@ -16,6 +17,7 @@ struct JointDrive {
   EffortLimits limits;
   double length_scale = 1;  // of the link that the joint moves
   double section_scale = 1;
+  Tube tube = {};  // that the link is; a diameter of 0: it is none, or that of the problem
 };
 
 struct ArmDesign {

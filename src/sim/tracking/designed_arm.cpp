@@ -86,11 +86,14 @@ RobotModel stretch_link(RobotModel model, std::size_t link, double length_scale,
 }
 
 RobotModel make_robot(const RobotModel& nominal, const ArmDesign& design,
-                      double torque_per_mass_n_m_per_kg) {
+                      double torque_per_mass_n_m_per_kg, const TubeMaterial& material) {
   RobotModel robot = nominal;
   for (std::size_t i = 0; i < design.joints.size(); ++i) {
-    robot = stretch_link(std::move(robot), i, design.joints[i].length_scale,
-                         design.joints[i].section_scale);
+    const JointDrive& its = design.joints[i];
+    robot = stretch_link(std::move(robot), i, its.length_scale, its.section_scale);
+    if (its.tube.diameter_m > 0) {
+      make_tube(robot, i, its.tube, material);
+    }
   }
   for (std::size_t i = 1; torque_per_mass_n_m_per_kg > 0 && i < design.joints.size(); ++i) {
     Inertial motor;
@@ -114,12 +117,17 @@ std::shared_ptr<const ArmClearance> make_clearance(const ArmClearance& nominal,
   for (std::size_t i = 0; i < design.joints.size(); ++i) {
     const JointDrive& its = design.joints[i];
     std::optional<Capsule>& capsule = capsules[i + 1];
-    if (!capsule || (its.length_scale == 1 && its.section_scale == 1)) {
+    const bool is_tube = its.tube.diameter_m > 0;
+    if (!is_tube && (!capsule || (its.length_scale == 1 && its.section_scale == 1))) {
       continue;
     }
     const bool is_last = i + 1 == robot.joint_count();
     const Eigen::Vector3d end =
         (is_last ? robot.tip_pose : robot.joints[i + 1].origin).translation();
+    if (is_tube) {
+      capsule = Capsule{Eigen::Vector3d::Zero(), its.length_scale * end, its.tube.diameter_m / 2};
+      continue;
+    }
     const Eigen::Matrix3d map = make_stretch(end.normalized(), its.length_scale, its.section_scale);
     // The map makes an ellipsoid of a ball; its longest half axis is the radius.
     capsule = Capsule{map * capsule->from_m, map * capsule->to_m,
@@ -132,6 +140,23 @@ bool is_stretched(const ArmDesign& design) {
   return std::ranges::any_of(design.joints, [](const JointDrive& joint) {
     return joint.length_scale != 1 || joint.section_scale != 1;
   });
+}
+
+bool has_tubes(const ArmDesign& design) {
+  return std::ranges::any_of(design.joints,
+                             [](const JointDrive& joint) { return joint.tube.diameter_m > 0; });
+}
+
+double calc_deflection_m(const RobotModel& nominal, const ArmDesign& design,
+                         const TubeMaterial& material, double payload_kg, double gravity_m_per_s2) {
+  std::vector<Tube> tubes;
+  std::vector<double> lengths_m;
+  for (std::size_t i = 0; i < design.joints.size(); ++i) {
+    const JointDrive& its = design.joints[i];
+    tubes.push_back({its.tube.diameter_m, std::min(its.tube.wall_m, its.tube.diameter_m / 2)});
+    lengths_m.push_back(its.length_scale * get_link_length_m(nominal, i));
+  }
+  return calc_deflection_m(tubes, lengths_m, material, payload_kg, gravity_m_per_s2);
 }
 
 double calc_moving_mass_kg(const RobotModel& model) {

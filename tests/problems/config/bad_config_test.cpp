@@ -231,10 +231,12 @@ const std::vector<Mistake> kVariables = {
     {"[variables]\noptimize = ['p', 'effort']",
      "3: variables.optimize is ['p', 'effort']; unknown design parameter 'effort'. Valid: gains, "
      "p, "
-     "i, d, effort_min, effort_max, length_scale, section_scale"},
+     "i, d, effort_min, effort_max, length_scale, section_scale, "
+     "tube_diameter, tube_wall"},
     {"[variables]\noptimize = ['effort_mn']",
      "3: variables.optimize is ['effort_mn']; unknown design parameter 'effort_mn'; did you mean "
-     "'effort_min'? Valid: gains, p, i, d, effort_min, effort_max, length_scale, section_scale"},
+     "'effort_min'? Valid: gains, p, i, d, effort_min, effort_max, length_scale, section_scale, "
+     "tube_diameter, tube_wall"},
     {"[variables]\noptimize = ['d', 'p', 'd']",
      "3: variables.optimize is ['d', 'p', 'd']; 'd' stands there twice; name it once"},
     {"[variables]\noptimize = []",
@@ -264,7 +266,8 @@ const std::vector<Mistake> kVariables = {
      "variables.joint[0].optimise in p.toml:4 meant?)"},
     {"[[variables.joint]]\nname = 'joint_1'\noptimize = ['i', 'kp']",
      "4: variables.joint[0].optimize is ['i', 'kp']; unknown design parameter 'kp'; did you mean "
-     "'p'? Valid: gains, p, i, d, effort_min, effort_max, length_scale, section_scale"},
+     "'p'? Valid: gains, p, i, d, effort_min, effort_max, length_scale, section_scale, "
+     "tube_diameter, tube_wall"},
     {"[[variables.joint]]\nname = 'joint_1'\noptimize = ['p']\n"
      "[[variables.joint]]\nname = 'joint_1'\noptimize = ['d']",
      "6: variables.joint[1].name is 'joint_1'; another [[variables.joint]] has that name; put them "

@@ -241,7 +241,7 @@ TEST(BadDesign, EveryMistakeInItsFileHasItsPlace) {
   EXPECT_EQ(folder.refusal_of_design(make_joint() + "effort_n_m = 5\n"),
             "d.toml:7: unknown key joint[0].effort_n_m; did you mean 'joint[0].effort_min_n_m'? "
             "Valid here: name, p_n_m_per_rad, i_n_m_per_rad_s, d_n_m_s_per_rad, effort_min_n_m, "
-            "effort_max_n_m, length_scale, section_scale");
+            "effort_max_n_m, length_scale, section_scale, tube_diameter_m, tube_wall_m");
   EXPECT_EQ(folder.refusal_of_design(make_joint() + "[[published]]\nlabel = 'x'\n"),
             "d.toml:7: published[0].problem is missing; it must be a string");
   EXPECT_EQ(folder.refusal_of_design(

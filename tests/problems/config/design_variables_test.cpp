@@ -81,8 +81,10 @@ TEST(DesignVariables, TakeTheDerivativesAwayAndSayWhy) {
     EXPECT_FALSE(problem->description().has_jacobian);
     return problem->description().jacobian_advice;
   };
-  EXPECT_THAT(advise({kLinks}), HasSubstr("leave length_scale, section_scale and speed out"));
-  EXPECT_THAT(advise({kSpeed}), HasSubstr("leave length_scale, section_scale and speed out"));
+  EXPECT_THAT(advise({kLinks}), HasSubstr("leave length_scale, section_scale, "
+                                          "tube_diameter, tube_wall and speed out"));
+  EXPECT_THAT(advise({kSpeed}), HasSubstr("leave length_scale, section_scale, "
+                                          "tube_diameter, tube_wall and speed out"));
   EXPECT_THAT(advise({kMotors}), HasSubstr("leave [motors] out"));
   EXPECT_TRUE(load_tracking("q1-complex", with_lanes({kMotors, R"(variables.optimize=["p"])"}))
                   ->description()

@@ -241,7 +241,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "obstacles; set it to \"warn\" or \"enforce\""},
         BadObstacle{"AroundHome",
                     kWarn + "home = [0, 0, 0, 0]\n" + kSphere + "centre_m = [0.9, 0, 1.5]\n", "",
-                    "p.toml:4: task.home is an array; the link 'link_"},
+                    "p.toml:4: task.home is [0, 0, 0, 0]; the link 'link_"},
         BadObstacle{"AFormThatIsNone", kWarn + "[[obstacle]]\nkind = \"cone\"\n", "",
                     "obstacle[0].kind is \"cone\"; it must be "},
         BadObstacle{"NoFile", kWarn + "[[obstacle]]\nkind = \"urdf\"\nfile = \"scene.urdf\"\n", "",

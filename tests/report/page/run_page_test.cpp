@@ -315,10 +315,10 @@ TEST_F(RunPage, OfAMotionHasDesignsWithItsSettings) {
   const json page = make_page("a");
   const json& file = page["front"]["points"][0]["file"];
   EXPECT_THAT(file["text"].get<std::string>(), HasSubstr("[[variable]]\nname = \"interval_1\""));
-  EXPECT_THAT(file["command"].get<std::string>(),
-              testing::AllOf(HasSubstr("--problem gasparetto-front"), HasSubstr("motion.samples=31"),
-                             HasSubstr("{free=true}"), HasSubstr("centre_m=[9"),
-                             HasSubstr("\"energy\"")));
+  EXPECT_THAT(
+      file["command"].get<std::string>(),
+      testing::AllOf(HasSubstr("--problem gasparetto-front"), HasSubstr("motion.samples=31"),
+                     HasSubstr("{free=true}"), HasSubstr("centre_m=[9"), HasSubstr("\"energy\"")));
 }
 
 TEST_F(RunPage, OfConstraintsCountsOnlyDesignsThatKeepThem) {

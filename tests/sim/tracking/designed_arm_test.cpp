@@ -168,6 +168,41 @@ TEST(StretchedArm, InverseKinematicsLeadItsTipToTheTarget) {
   EXPECT_FALSE(kinematics.solve({3.5, 0, 0.5}, q));
 }
 
+// A pipe's moments of inertia are those of the cylinder less those of its bore.
+TEST(TubedArm, HasTheMassesOfItsTubes) {
+  const RobotModel nominal = load_urdf(ARMWRIGHT_CONFIGS "/robots/irb4600_40_255.urdf");
+  ArmDesign design;
+  design.joints.resize(4);
+  design.joints[1].length_scale = 1.2;
+  design.joints[1].tube = {0.2, 0.01};
+  const TubeMaterial steel{.youngs_modulus_pa = 2e11, .density_kg_per_m3 = 7850};
+  const RobotModel robot = make_robot(nominal, design, 0, steel);
+  const Vector3d way = nominal.joints[2].origin.translation();
+  const double length = 1.2 * way.norm();
+  const double outer = 7850 * std::numbers::pi * 0.1 * 0.1 * length;
+  const double bore = 7850 * std::numbers::pi * 0.09 * 0.09 * length;
+  const Inertial& body = robot.links[1].inertial;
+  EXPECT_NEAR(body.mass_kg, outer - bore, 1e-10);
+  EXPECT_LT((body.com_m - 0.6 * way).norm(), 1e-14);
+  const Vector3d axis = way.normalized(), across = way.unitOrthogonal();
+  EXPECT_NEAR(axis.dot(body.inertia_kg_m2 * axis), (outer * 0.01 - bore * 0.0081) / 2, 1e-10);
+  EXPECT_NEAR(across.dot(body.inertia_kg_m2 * across),
+              (outer * 0.01 - bore * 0.0081) / 4 + (outer - bore) * length * length / 12, 1e-9);
+  EXPECT_EQ(robot.links[2].inertial.mass_kg, nominal.links[2].inertial.mass_kg);
+  EXPECT_EQ(robot.joints[2].origin.translation(), Vector3d(1.2 * way));
+  EXPECT_TRUE(has_tubes(design));
+  // One tube that is clamped at its joint and carries 5 kg at its end.
+  RobotModel arm = make_one_link(make_box({1, 1, 1}, 1, {0, 0, 0}), {0.8, 0, 0});
+  ArmDesign single;
+  single.joints.resize(1);
+  single.joints[0].length_scale = 1.25;
+  single.joints[0].tube = {0.2, 0.01};
+  const double ei = 2e11 * std::numbers::pi / 64 * (std::pow(0.2, 4) - std::pow(0.18, 4));
+  const double weight = 7850 * std::numbers::pi / 4 * (0.04 - 0.0324) * 9.81;
+  EXPECT_NEAR(calc_deflection_m(arm, single, steel, 5, 9.81),
+              weight / (8 * ei) + 5 * 9.81 / (3 * ei), 1e-15);
+}
+
 // Returns a pendulum: a bar with a balanced wheel at its end. The wheel does not turn while the bar
 // swings, so it acts as a point mass, and so does the motor of its axle.
 RobotModel make_wheel_pendulum() {
