@@ -64,9 +64,9 @@ TEST(TaskObstacle, OutOfReachChangesNoFaultAndNoBitOfAnEvaluation) {
 
 // What a file without the keys records is what version 1.0 recorded.
 TEST(TaskObstacle, AbsentKeysAreNotRecorded) {
-  const std::string json = load_problem("q1-complex").resolved_json;
+  const std::string recorded = load_problem("q1-complex").resolved_json;
   for (const char* key : {"obstacle", "clearance", "position_m"}) {
-    EXPECT_THAT(json, Not(HasSubstr(key)));
+    EXPECT_THAT(recorded, Not(HasSubstr(key)));
   }
 }
 

@@ -25,7 +25,7 @@ RobotModel make_gantry() {
     joint.kind = JointKind::prismatic;
     joint.lower = -1;
     joint.upper = 1;
-    joint.speed_limit = 100;
+    joint.speed_limit = 2;
     joint.effort_limit = 1000;
   }
   robot.joints[0].name = "y";
@@ -133,7 +133,7 @@ TEST(PathObstacle, AroundTheStartIsFoundAtTheStart) {
 
 TEST(PathObstacle, OutOfReachChangesNoBitOfTargetsAndNoFault) {
   TrackingTask task = make_gantry_task();
-  task.speed_m_per_s = 100;  // so that there are faults of speed
+  task.speed_m_per_s = 5;  // so that there are faults of speed
   TrackingTask other = task;
   other.clearance = make_boom_clearance({make_post(9, 9)});
   TargetTable a, b;
