@@ -16,10 +16,11 @@ using testing::HasSubstr;
 using testing::Not;
 
 const std::vector<std::string> kTubes = {
-    "physics.engine=articulated", "tubes.diameter_m=[0.25,0.2,0.18,0.15]", "tubes.wall_m=[0.006]"};
+    "physics.engine=articulated", "tubes.diameter_m=[0.35,0.3,0.25,0.2]", "tubes.wall_m=[0.02]",
+    "tubes.density_kg_per_m3=7850", "tubes.youngs_modulus_pa=2.1e11"};
 const std::vector<std::string> kSizes = {
     R"(variables.optimize=["p","length_scale","tube_diameter","tube_wall"])",
-    "tubes.diameter_bounds_m=[0.08,0.35]", "tubes.wall_bounds_m=[0.002,0.012]",
+    "tubes.diameter_bounds_m=[0.15,0.45]", "tubes.wall_bounds_m=[0.008,0.04]",
     "tubes.deflection_limit_m=0.002"};
 
 std::vector<std::string> join_settings(std::vector<std::string> settings,
@@ -36,18 +37,18 @@ TEST(DesignTubes, AreVariablesInMetresPerJoint) {
   ASSERT_EQ(variables.size(), 16u);
   EXPECT_EQ(variables[6].name, "joint_2.tube_diameter");
   EXPECT_EQ(variables[6].unit, "m");
-  EXPECT_EQ(variables[6].lower, 0.08);
-  EXPECT_EQ(variables[6].start, 0.2);
-  EXPECT_EQ(variables[6].upper, 0.35);
+  EXPECT_EQ(variables[6].lower, 0.15);
+  EXPECT_EQ(variables[6].start, 0.3);
+  EXPECT_EQ(variables[6].upper, 0.45);
   EXPECT_EQ(variables[6].scale, Scale::linear);
   EXPECT_EQ(variables[7].name, "joint_2.tube_wall");
-  EXPECT_EQ(variables[7].start, 0.006);
+  EXPECT_EQ(variables[7].start, 0.02);
   std::vector<double> x = get_start(*problem);
-  x[6] = 0.3;
-  x[7] = 0.01;
+  x[6] = 0.4;
+  x[7] = 0.03;
   const ArmDesign design = problem->make_design(x);
-  EXPECT_EQ(design.joints[1].tube, (Tube{0.3, 0.01}));
-  EXPECT_EQ(design.joints[0].tube, (Tube{0.25, 0.006}));
+  EXPECT_EQ(design.joints[1].tube, (Tube{0.4, 0.03}));
+  EXPECT_EQ(design.joints[0].tube, (Tube{0.35, 0.02}));
   EXPECT_EQ(problem->make_vector(design), x);
   EXPECT_FALSE(problem->description().has_jacobian);
 }
@@ -56,19 +57,20 @@ TEST(DesignTubes, GiveTheMassesTheMetricsAndTheConstraint) {
   const auto problem = load_tracking("co-design", join_settings(kTubes, kSizes));
   std::vector<double> x = get_start(*problem);
   x[5] = 1.1;  // the length of link 2
-  x[6] = 0.3;
-  x[7] = 0.01;
+  x[6] = 0.4;
+  x[7] = 0.03;
   const Evaluation evaluation = problem->evaluate(x, kFirstCase);
-  const std::vector<Tube> tubes = {{0.25, 0.006}, {0.3, 0.01}, {0.18, 0.006}, {0.15, 0.006}};
+  const std::vector<Tube> tubes = {{0.35, 0.02}, {0.4, 0.03}, {0.25, 0.02}, {0.2, 0.02}};
   const TrackingConfig& config = problem->config();
   std::vector<double> lengths_m;
   double mass_kg = config.task.load_kg;
   const ArmDesign design = problem->make_design(x);
   for (std::size_t i = 0; i < 4; ++i) {
     lengths_m.push_back((i == 1 ? 1.1 : 1) * get_link_length_m(config.robot, i));
-    const double pipe_kg = 2700 * tubes[i].section_m2() * lengths_m[i];
-    EXPECT_NEAR(make_robot(config.robot, design, 0).links[i].inertial.mass_kg, pipe_kg,
-                1e-12 * pipe_kg);
+    const double pipe_kg = 7850 * tubes[i].section_m2() * lengths_m[i];
+    EXPECT_NEAR(
+        make_robot(config.robot, design, 0, config.tubes.material).links[i].inertial.mass_kg,
+        pipe_kg, 1e-12 * pipe_kg);
     mass_kg += pipe_kg;
   }
   for (std::size_t i = 1; i < 4; ++i) {  // the motors of the joints after the first
@@ -100,7 +102,7 @@ TEST(DesignTubes, OfADesignReplaceThoseOfTheProblem) {
   const auto problem =
       load_tracking("co-design", join_settings(kTubes, {R"(variables.optimize=["p"])"}));
   const ArmDesign own = problem->config().start;
-  EXPECT_EQ(own.joints[3].tube, (Tube{0.15, 0.006}));
+  EXPECT_EQ(own.joints[3].tube, (Tube{0.2, 0.02}));
   ArmDesign bare = own;
   for (JointDrive& joint : bare.joints) {
     joint.tube = {};
@@ -116,8 +118,8 @@ TEST(DesignTubes, OfADesignReplaceThoseOfTheProblem) {
   EXPECT_NE(track(thick), track(own));
   // A wall above the radius makes a bar.
   ArmDesign bar = own, thicker = own;
-  bar.joints[2].tube = {0.18, 0.09};
-  thicker.joints[2].tube = {0.18, 0.2};
+  bar.joints[2].tube = {0.25, 0.125};
+  thicker.joints[2].tube = {0.25, 0.2};
   EXPECT_EQ(problem->make_robot(bar).links[2].inertial.mass_kg,
             problem->make_robot(thicker).links[2].inertial.mass_kg);
   EXPECT_EQ(problem->calc_deflection_m(bar), problem->calc_deflection_m(thicker));
@@ -172,18 +174,18 @@ INSTANTIATE_TEST_SUITE_P(
                  join_settings(kTubes, {R"(variables.optimize=["section_scale"])"}),
                  "the links are tubes ([tubes]), so that section_scale cannot be a variable"},
         BadTubes{"AWallThickerThanTheRadius",
-                 join_settings(kTubes, {R"(variables.optimize=["p"])", "tubes.wall_m=[0.08]"}),
-                 "tubes.wall_m is [0.08]; the wall of link 'link_4' can be 0.08 m, thicker than "
-                 "the radius of its tube, 0.075 m; make it thinner"},
+                 join_settings(kTubes, {R"(variables.optimize=["p"])", "tubes.wall_m=[0.12]"}),
+                 "tubes.wall_m is [0.12]; the wall of link 'link_3' can be 0.12 m, thicker than "
+                 "the radius of its tube, 0.1 m; make it thinner"},
         BadTubes{"AWallThatCanBecomeThicker",
                  join_settings(kTubes, {R"(variables.optimize=["tube_wall"])",
-                                        "tubes.wall_bounds_m=[0.002,0.1]"}),
-                 "the wall of link 'link_3' can be 0.1 m, thicker than the radius of its tube"},
+                                        "tubes.wall_bounds_m=[0.002,0.13]"}),
+                 "the wall of link 'link_2' can be 0.13 m, thicker than the radius of its tube"},
         BadTubes{"AStartOutsideOfItsBounds",
                  join_settings(kTubes, {R"(variables.optimize=["tube_wall"])",
-                                        "tubes.wall_bounds_m=[0.007,0.012]"}),
-                 "joint_1.tube_wall starts at 0.006 m, outside of tubes.wall_bounds_m, 0.007 to "
-                 "0.012 m"},
+                                        "tubes.wall_bounds_m=[0.03,0.04]"}),
+                 "joint_1.tube_wall starts at 0.02 m, outside of tubes.wall_bounds_m, 0.03 to "
+                 "0.04 m"},
         BadTubes{
             "LengthsOfMotions",
             join_settings(kTubes, {R"(variables.optimize=["p"])", "tubes.length_bounds_m=[0.1,2]"}),
@@ -229,7 +231,7 @@ TEST(DesignTubes, OfDesignsAreRefusedWhereTheyDoNotFit) {
                              join_settings(kTubes, {start, R"(variables.optimize=["tube_wall"])",
                                                     "tubes.wall_bounds_m=[0.002,0.06]"}));
               }),
-              HasSubstr("the wall of link 'link_3' can be 0.06 m, thicker than the radius of its "
+              HasSubstr("the wall of link 'link_2' can be 0.06 m, thicker than the radius of its "
                         "tube, 0.05 m; make it thinner in the design, or change the bounds"));
 }
 
@@ -241,9 +243,9 @@ TEST(DesignTubes, AreTheCapsulesThatMustKeepClear) {
                              "obstacle=[{kind=\"sphere\",centre_m=[9,9,9],radius_m=1}]"}));
   ArmDesign design = problem->config().start;
   EXPECT_EQ(problem->make_task(design).clearance, problem->config().task.clearance);
-  design.joints[1].tube.diameter_m = 0.3;
+  design.joints[1].tube.diameter_m = 0.4;
   const auto capsules = problem->make_task(design).clearance->capsules();
-  EXPECT_EQ(capsules[2]->radius_m, 0.15);
+  EXPECT_EQ(capsules[2]->radius_m, 0.2);
   EXPECT_EQ(capsules[2]->to_m, problem->config().robot.joints[2].origin.translation());
 }
 

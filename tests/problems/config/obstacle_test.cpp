@@ -41,7 +41,7 @@ std::vector<std::string> with(std::vector<std::string> settings,
 TEST(TaskObstacle, OnThePathIsNamedBeforeAnythingRuns) {
   EXPECT_THAT(check_paths(load_problem("q2-e6", kLine)), Not(Contains(HasSubstr("post"))));
   EXPECT_THAT(check_paths(load_problem("q2-e6", with(kLine, {kPost}))),
-              Contains(AllOf(HasSubstr("on the way to point 1: link 4 ('link_4') would be "),
+              Contains(AllOf(HasSubstr("on the way to point 1: link 3 ('link_2') would be "),
                              HasSubstr(" m inside the obstacle 'post' (at "))));
   const LoadedProblem strict = load_problem("q2-e6", with(kLine, {kPost, "task.limits=enforce"}));
   EXPECT_THAT(error_of(ErrorKind::bad_data, [&] { check_paths(strict); }),
