@@ -10,13 +10,15 @@ namespace armwright {
 namespace {
 
 constexpr const char* kTopKeys =
-    "name, title, description, kind, schedule, racing, sets, run, published, robot, physics, task, "
-    "control, "
-    "workspace, path, objective, training, variables, motors, perturbation, requirement, sweep";
+    "name, title, description, kind, schedule, racing, sets, run, published, robot, tubes, "
+    "physics, "
+    "task, control, obstacle, workspace, path, objective, training, variables, motors, "
+    "perturbation, requirement, sweep";
 constexpr const char* kTaskKeys =
     "signal, speed_m_per_s, distance_limit_m, trapezoid_acceleration_m_per_s2, rest_s, "
     "count_first_point, ik_bug, load_kg, load_inertia_kg_m2, load_com_m, kinematics, solver, "
-    "limits, floor_m, orientation, tool_rpy_rad, tool_axis, orientation_arm_m, home";
+    "limits, floor_m, orientation, tool_rpy_rad, tool_axis, orientation_arm_m, home, "
+    "self_clearance, clearance_m";
 
 struct Mistake {
   std::string text;     // behind `extends = "base"`, from line 2 on

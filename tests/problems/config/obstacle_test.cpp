@@ -243,7 +243,8 @@ INSTANTIATE_TEST_SUITE_P(
                     kWarn + "home = [0, 0, 0, 0]\n" + kSphere + "centre_m = [0.9, 0, 1.5]\n", "",
                     "p.toml:4: task.home is [0, 0, 0, 0]; the link 'link_"},
         BadObstacle{"AFormThatIsNone", kWarn + "[[obstacle]]\nkind = \"cone\"\n", "",
-                    "obstacle[0].kind is \"cone\"; it must be "},
+                    "p.toml:5: unknown obstacle[0].kind 'cone'. Valid: sphere, capsule, box, "
+                    "cylinder, urdf"},
         BadObstacle{"NoFile", kWarn + "[[obstacle]]\nkind = \"urdf\"\nfile = \"scene.urdf\"\n", "",
                     "p.toml:6: obstacle[0].file is \"scene.urdf\"; there is no such file, in "},
         BadObstacle{
