@@ -77,7 +77,8 @@ TEST(DesignTubes, GiveTheMassesTheMetricsAndTheConstraint) {
     mass_kg += calc_largest_effort(design.joints[i]) / config.torque_per_mass_n_m_per_kg;
   }
   const double deflection_m = calc_deflection_m(
-      tubes, lengths_m, TubeMaterial{}, config.task.load_kg, config.task.physics.gravity_m_per_s2);
+      tubes, lengths_m, TubeMaterial{.youngs_modulus_pa = 2.1e11, .density_kg_per_m3 = 7850},
+      config.task.load_kg, config.task.physics.gravity_m_per_s2);
   const auto get = [&](const std::string& name) {
     const auto& metrics = problem->description().metrics;
     for (std::size_t i = 0; i < metrics.size(); ++i) {
