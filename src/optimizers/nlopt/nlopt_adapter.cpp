@@ -44,6 +44,7 @@ void NloptAdapter::begin(std::function<void()> stop_solver) {
   stop_solver_ = std::move(stop_solver);
   calls_ = 0;
   nan_sequence_ = 0;
+  objective_unit_ = 0;
 }
 
 void NloptAdapter::rethrow() const {
@@ -57,17 +58,30 @@ double NloptAdapter::ask_objective(std::span<const double> coordinates,
   ++calls_;
   Answer* answer = find(coordinates);
   // A differenced function has no place evaluated twice.
+  const bool needs_slopes = !gradient.empty() || (differenced_ && objective_unit_ == 0);
   if (answer == nullptr || (answer->is_objective_used && !differenced_) ||
-      (!gradient.empty() && answer->derivatives.empty())) {
-    answer = evaluate(coordinates, !gradient.empty());
+      (needs_slopes && answer->derivatives.empty())) {
+    answer = evaluate(coordinates, needs_slopes);
   }
   if (answer == nullptr) {
     write_gradient({}, 0, gradient);
-    return worst_objective_;
+    return worst_objective_ / (objective_unit_ > 0 ? objective_unit_ : 1);
   }
   answer->is_objective_used = true;
+  if (!differenced_) {
+    return answer->objective;
+  }
+  if (objective_unit_ == 0) {
+    for (const std::vector<double>& slopes : answer->derivatives) {
+      objective_unit_ = std::max(objective_unit_, std::abs(slopes[0]));
+    }
+    objective_unit_ = objective_unit_ > 0 ? objective_unit_ : 1;
+  }
   write_gradient(answer->derivatives, 0, gradient);
-  return answer->objective;
+  for (double& slope : gradient) {
+    slope /= objective_unit_;
+  }
+  return answer->objective / objective_unit_;
 }
 
 double NloptAdapter::ask_constraint(std::span<const double> coordinates, std::size_t index,

@@ -67,6 +67,9 @@ class NloptAdapter {
   const NloptSettings& settings_;
   ScalarFunction function_;
   std::optional<DifferencedFunction> differenced_;  // if NLopt gets gradients
+  // NLopt gets the objective in units of its largest slope at the search's first place: its first step is
+  // as long as the gradient, and would otherwise depend on the objective's unit. 0: not known yet.
+  double objective_unit_ = 0;
   std::function<void()> stop_solver_;
   std::array<Answer, 8> answers_;  // the latest
   std::size_t next_answer_ = 0;

@@ -189,8 +189,10 @@ class Search {
     questions_.rethrow();
     // The point that NLopt returns is not used, since the evaluator knows the best one (COBYLA
     // returns its last point).
-    const bool is_normal_end =
-        result > 0 || result == NLOPT_ROUNDOFF_LIMITED || result == NLOPT_FORCED_STOP;
+    // SLSQP calls it a failure if a rough objective leaves it no step.
+    const bool is_normal_end = result > 0 || result == NLOPT_ROUNDOFF_LIMITED ||
+                               result == NLOPT_FORCED_STOP ||
+                               (result == NLOPT_FAILURE && settings_.differences);
     if (!is_normal_end && !is_over()) {
       const char* message = nlopt_get_errmsg(solver_.get());
       throw OptimizerFailure(fmt::format(
