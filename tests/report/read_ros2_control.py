@@ -135,10 +135,15 @@ def read(file, name):
     return {"update_rate": manager["update_rate"], "interface": commands[0], "joints": joints, "gains": gains}
 
 
-folder = pathlib.Path(sys.argv[1])
-found = [name for name in FILES if (folder / f"controllers-{name}.yaml").exists()]
-require({file.name for file in folder.iterdir()} == {f"controllers-{name}.yaml" for name in found}, "other files than expected")
-everything = {name: read(folder / f"controllers-{name}.yaml", name) for name in found}
-# Only Humble lacks a controller of positions.
-require(found == list(FILES) or found == ["jazzy", "kilted"] and everything["jazzy"]["interface"] == "position", f"files for {found} alone")
-print(json.dumps(everything))
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    found = [name for name in FILES if (folder / f"controllers-{name}.yaml").exists()]
+    require({file.name for file in folder.iterdir()} == {f"controllers-{name}.yaml" for name in found}, "other files than expected")
+    everything = {name: read(folder / f"controllers-{name}.yaml", name) for name in found}
+    # Only Humble lacks a controller of positions.
+    require(found == list(FILES) or found == ["jazzy", "kilted"] and everything["jazzy"]["interface"] == "position", f"files for {found} alone")
+    print(json.dumps(everything))
+
+
+if __name__ == "__main__":
+    main()
