@@ -173,7 +173,7 @@ void check_line() {
   const RobotModel robot = make_line_arm();
   const std::vector<double> none(3, kNoLimit);
   const auto find_time = [&](double gravity, std::size_t intervals, std::vector<double> efforts) {
-    return calc_least_time(robot, gravity, sample_path(find_line_posture, intervals),
+    return calc_least_time(robot, gravity, sample_path(find_line_postures(intervals)),
                            {none, none, none, std::move(efforts)})
         .duration_s;
   };

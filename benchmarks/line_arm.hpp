@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "sim/robot/robot_model.hpp"
@@ -36,6 +37,16 @@ inline Eigen::VectorXd find_line_posture(double s) {
   Eigen::VectorXd q(3);
   q << std::atan2(p.y(), p.x()), std::atan2(p.z(), r) - elbow / 2, elbow;
   return q;
+}
+
+// Returns the joint positions at even shares of the line, one column per place.
+inline Eigen::MatrixXd find_line_postures(std::size_t intervals) {
+  Eigen::MatrixXd positions(3, static_cast<Eigen::Index>(intervals) + 1);
+  for (std::size_t i = 0; i <= intervals; ++i) {
+    positions.col(static_cast<Eigen::Index>(i)) =
+        find_line_posture(static_cast<double>(i) / static_cast<double>(intervals));
+  }
+  return positions;
 }
 
 }  // namespace armwright

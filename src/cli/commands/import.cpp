@@ -71,15 +71,11 @@ int run_import(const ImportOptions& options) {
       load_problem(options.config.empty() ? run.problem : options.config, options.overrides.get());
   const TrackingProblem& tracking = require_tracking(problem);
   check_variables(problem, run);
-  DesignFile file;
+  DesignFile file = make_design_file(tracking.config().robot, tracking.make_design(run.x));
   file.name = fmt::format("{}-{}-{}", run.problem, run.label, run.replicate);
   file.title = fmt::format("Evaluation {} of {} on {}, replicate {}", run.evaluation, run.label,
                            run.problem, run.replicate);
   file.source = fmt::format("armwright import; training objective {}", run.objective);
-  file.design = tracking.make_design(run.x);
-  for (const Joint& joint : tracking.config().robot.joints) {
-    file.joint_names.push_back(joint.name);
-  }
   write_output(options.out, to_toml(file));
   write_message(fmt::format("{}: training objective {}", file.title, run.objective));
   return exit_code::kDone;

@@ -93,13 +93,9 @@ std::pair<DesignFile, LoadedProblem> load_design_and_problem(const std::string& 
   }
   LoadedProblem loaded = load_problem(problem, overrides);
   const TrackingConfig& config = require_tracking(loaded).config();
-  DesignFile file;
+  DesignFile file = make_design_file(config.robot, config.start);
   file.name = kStartDesign;
   file.title = fmt::format("Where {} starts", loaded.name);
-  for (const Joint& joint : config.robot.joints) {
-    file.joint_names.push_back(joint.name);
-  }
-  file.design = config.start;
   return {std::move(file), std::move(loaded)};
 }
 

@@ -67,10 +67,8 @@ std::string describe_problem(const StudyPlan& plan, const ProblemResult& problem
   const bool has_cost = std::isfinite(problem.best_known) && !problem.has_front;
   std::vector<Column> columns = {{"optimizer", false}, {"median"},   {"quartiles"},
                                  {"mean rank"},        {"no value"}, {"A12, p"}};
-  const bool has_igd =
-      problem.has_front && std::ranges::any_of(problem.optimizers, [](const OptimizerResult& one) {
-        return !one.igd_plus.empty();
-      });
+  const bool has_igd = std::ranges::any_of(
+      problem.optimizers, [](const OptimizerResult& one) { return !one.igd_plus.empty(); });
   if (has_igd) {
     columns.push_back({"IGD+"});
   }

@@ -1,5 +1,5 @@
-// The algorithms of NLopt that work without exact gradients, and their known properties. This header needs no NLopt: the
-// table is the same in builds with and without it.
+// The algorithms of NLopt that work without exact gradients, and their known properties. This header
+// needs no NLopt: the table is the same in builds with and without it.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,7 @@
 
 namespace armwright {
 
-// Returns one row per algorithm. In a build without NLopt they say so and
-// cannot be used.
+// Returns one row per algorithm. In a build without NLopt they say so and cannot be used.
 std::vector<OptimizerRow> make_nlopt_rows();
 
 // The way in which an algorithm searches. It decides which options the algorithm has.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/config.hpp"
 #include "base/error.hpp"
@@ -237,6 +238,15 @@ DesignFile load_design(std::string_view name_or_path) {
     throw Error(error.kind() == ErrorKind::usage ? ErrorKind::bad_data : error.kind(),
                 error.what());
   }
+}
+
+DesignFile make_design_file(const RobotModel& robot, ArmDesign design) {
+  DesignFile file;
+  for (const Joint& joint : robot.joints) {
+    file.joint_names.push_back(joint.name);
+  }
+  file.design = std::move(design);
+  return file;
 }
 
 std::string to_toml(const DesignFile& file) {

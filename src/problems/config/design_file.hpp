@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/setting.hpp"
+#include "sim/robot/robot_model.hpp"
 #include "sim/tracking/design.hpp"
 
 namespace armwright {
@@ -34,6 +35,8 @@ struct DesignFile {
   std::vector<PublishedResult> published;
 };
 
+// Returns the file of a design for a robot, without name, title and source.
+DesignFile make_design_file(const RobotModel& robot, ArmDesign design);
 // Reads a shipped design by name, or a file by path. Throws Error{bad_data} that names file, line,
 // field, value and what is allowed, Error{usage} for an unknown name, Error{io} for a file that
 // cannot be read.

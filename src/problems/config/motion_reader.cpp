@@ -72,8 +72,7 @@ const Setting<std::vector<double>> kEffortLimits{"effort_limits", kLimitRange,
 const Setting<std::vector<double>> kEffortShareBounds{
     "effort_share_bounds", Range{.lower = 1e-3, .upper = 1}, kNoDefault,
     "for the curve line: least and largest share of its effort limit that a joint may use, which "
-    "is "
-    "a variable (default: 0.1 and 1)"};
+    "is a variable (default: 0.1 and 1)"};
 const Setting<double> kToolSpeedLimit{"tool_speed_limit_m_per_s", kLimitRange, kNoDefault,
                                       "largest speed of the tip (default: none)"};
 const Setting<double> kLeastClearance{
@@ -93,8 +92,8 @@ const Setting<std::vector<double>> kPointToolRpy{
     "the tool's orientation there: roll, pitch and yaw (default: free)"};
 const Setting<std::string> kPointFile{"file", kNoDefault,
                                       "joint positions of one or more points: a motion.csv or "
-                                      "JointTrajectory, looked for beside this "
-                                      "file; its times do not count"};
+                                      "JointTrajectory, looked for beside this file; its times "
+                                      "do not count"};
 const Setting<bool> kPointFree{"free", false,
                                "whether the joint positions of the point are variables"};
 const SettingTable kMotionPointSettings{
@@ -360,7 +359,7 @@ void load_motion(const ConfigTable& table, LoadedProblem& loaded) {
   if (config.form.kind == CurveKind::line) {
     config.effort_share = read_bounds(its, kEffortShareBounds).value_or(config.effort_share);
   }
-  std::vector<ConfigTable> points;  // that of each point
+  std::vector<ConfigTable> points;  // the table that gives each point
   for (const ConfigTable& table_of : its.get_tables_or_empty(kMotionPointSettings)) {
     const std::vector<MotionPoint> read = table_of.has(kPointFile)
                                               ? read_point_file(table_of, config.robot, loaded)

@@ -102,15 +102,15 @@ const Setting<std::string> kObjectiveKind{
             "front", kErrorVsTorque}),
     "error",
     "what is minimised: one number, or each of objective.quantities (front). error_vs_torque is "
-    "the "
-    "front of these two. For the kind motion: sum (the default) or front"};
+    "the front of these two. For the kind motion: sum (the default) or front"};
 
 const Setting<std::vector<std::string>> kObjectiveQuantities{
     "quantities", kNoDefault,
     "what is minimised. In a front: error, torque, energy, duration, peak_torque, rms_torque, "
     "moving_mass, and the quantity of a [[requirement]]. For the kind motion: duration (the "
-    "default), "
-    "jerk, energy, peak_torque, rms_torque, clearance (made large), deflection and tool_speed"};
+    "default), jerk, energy, peak_torque, rms_torque, clearance (made large), deflection and "
+    "tool_speed"};
+
 const SettingTable kObjectiveSettings{
     .key = "objective",
     .settings = {&kObjectiveKind, &kObjectiveLogarithm, &kObjectiveStatistic, &kObjectiveCvarShare,
@@ -203,7 +203,6 @@ void read_front(const ConfigTable& table, TrackingConfig& config) {
   for (const Requirement& requirement : config.requirements) {
     known.push_back(get_requirement_row(requirement.quantity).key);
   }
-  // Those of the table without a requirement in this problem, for the message.
   const std::vector<std::string> names = table.get(kObjectiveQuantities);
   for (const std::string& name : names) {
     const auto& rows = requirement_table();

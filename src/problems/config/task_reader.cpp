@@ -37,8 +37,7 @@ const Setting<double> kTaskFloor{
 const Setting<std::string> kTaskLimits{
     "limits", limit_policy_names, "ignore",
     "what happens if a path exceeds joint ranges or speeds, or meets singularities, the floor or "
-    "obstacles: nothing, a "
-    "warning or an error"};
+    "obstacles: nothing, a warning or an error"};
 const Setting<double> kTaskClearance{
     "clearance_m",
     {.lower = 0, .upper = 10},

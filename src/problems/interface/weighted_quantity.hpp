@@ -1,5 +1,5 @@
-// What a problem minimises, as the reader of its file finds it: a term of a weighted sum, or an
-// objective of a front, whose weighted sum optimizers for one objective minimise.
+// One quantity that a problem minimises: a term of a weighted sum, or an objective of a front.
+// Optimizers for one objective minimise the weighted sum of a front.
 #pragma once
 
 #include <cstddef>

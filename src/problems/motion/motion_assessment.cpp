@@ -34,8 +34,7 @@ std::shared_ptr<const RobotModel> MotionProblem::make_arm(std::span<const double
   const double* next = x.data() + (x.size() - numbers);
   for (std::size_t link = 0; link < tubes.size(); ++link) {
     if (its.length_m) {
-      const bool is_last = link + 1 == robot.joint_count();
-      Eigen::Isometry3d& end = is_last ? robot.tip_pose : robot.joints[link + 1].origin;
+      Eigen::Isometry3d& end = get_link_end(robot, link);
       end.translation() *= *next++ / end.translation().norm();
     }
     tubes[link].diameter_m = its.diameter_m ? *next++ : tubes[link].diameter_m;
@@ -111,6 +110,7 @@ std::vector<std::vector<PathPlace>> MotionProblem::trace_lines(const RobotModel&
                                                                std::string& reason) const {
   std::vector<std::vector<PathPlace>> paths;
   const auto places = static_cast<Index>(config_.samples);
+  const std::vector<double> still(robot.joint_count(), 0);
   for (std::size_t k = 0; k + 1 < config_.points.size(); ++k) {
     const MotionPoint &from = config_.points[k], &to = config_.points[k + 1];
     const bool has_turn = from.has_turn && to.has_turn;
@@ -124,11 +124,8 @@ std::vector<std::vector<PathPlace>> MotionProblem::trace_lines(const RobotModel&
       const double s = static_cast<double>(i) / static_cast<double>(places - 1);
       const ToolPose target{.position_m = (1 - s) * from.tool->position_m + s * to.tool->position_m,
                             .turn = first.slerp(s, last).toRotationMatrix()};
-      NumericKinematics::Approach search = kinematics.make_search(
-          target, std::span<const double>(positions.col(i - 1).data(), robot.joint_count()));
-      NumericKinematics::Approach* const searches[] = {&search};
-      kinematics.approach(searches);
-      if (!search.reached) {
+      positions.col(i) = positions.col(i - 1);
+      if (!kinematics.follow(target, still, {positions.col(i).data(), robot.joint_count()})) {
         reason = fmt::format(
             "between points {} and {}: the arm cannot follow the straight line, it fails at "
             "({:.4g}, {:.4g}, {:.4g}) m; choose points without a singular posture or the end of a "
@@ -136,7 +133,6 @@ std::vector<std::vector<PathPlace>> MotionProblem::trace_lines(const RobotModel&
             k + 1, k + 2, target.position_m.x(), target.position_m.y(), target.position_m.z());
         return {};
       }
-      positions.col(i) = search.q;
     }
     paths.push_back(sample_path(positions));
   }
@@ -173,7 +169,11 @@ std::optional<MotionCurve> MotionProblem::make_curve(const RobotModel& robot,
         config_.form, points,
         config_.intervals_s.empty() ? x.first(count_intervals()) : std::span(config_.intervals_s));
   }
-  const auto paths = changes_arm() ? trace_lines(robot, points, reason) : lines_;
+  std::vector<std::vector<PathPlace>> own;
+  if (changes_arm()) {
+    own = trace_lines(robot, points, reason);
+  }
+  const std::vector<std::vector<PathPlace>>& paths = changes_arm() ? own : lines_;
   JointLimits limits = config_.limits;
   for (std::size_t joint = 0; joint < limits.effort.size(); ++joint) {
     limits.effort[joint] *= x[joint];

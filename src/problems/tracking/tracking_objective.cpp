@@ -69,57 +69,57 @@ std::string describe_sum(const TrackingObjective& objective) {
   return fmt::format("{} and {}", join(parts, ", "), last);
 }
 
-constexpr auto kFirstRequired = static_cast<std::size_t>(TrackingQuantity::requirement);
+// A quantity of fronts: its key in files, its name and unit, and its number.
+struct FrontRow {
+  std::string key;
+  Quantity named;  // the name of the error depends on its statistic
+  double ObjectiveTerms::*value;
+};
+
+// Returns the quantities in the order of TrackingQuantity.
+const std::vector<FrontRow>& front_table() {
+  static const std::vector<FrontRow> table = {
+      {"error", {"error", "m"}, &ObjectiveTerms::error_m},
+      {"torque", {"total torque", "N m"}, &ObjectiveTerms::torque_n_m},
+      {"energy", {"energy", "J"}, &ObjectiveTerms::energy_j},
+      {"duration", {"duration", "s"}, &ObjectiveTerms::duration_s},
+      {"peak_torque", {"peak torque", "N m"}, &ObjectiveTerms::peak_torque_n_m},
+      {"rms_torque", {"RMS torque", "N m"}, &ObjectiveTerms::rms_torque_n_m},
+      {"moving_mass", {"moving mass", "kg"}, &ObjectiveTerms::moving_mass_kg},
+  };
+  return table;
+}
 
 // Returns the name and unit of a quantity of a front.
 Quantity describe_term(const TrackingObjective& objective, const WeightedQuantity& term,
                        std::span<const Quantity> required) {
-  switch (static_cast<TrackingQuantity>(term.quantity)) {
-    case TrackingQuantity::error:
-      return {describe_error(objective), "m"};
-    case TrackingQuantity::torque:
-      return {"total torque", "N m"};
-    case TrackingQuantity::energy:
-      return {"energy", "J"};
-    case TrackingQuantity::duration:
-      return {"duration", "s"};
-    case TrackingQuantity::peak_torque:
-      return {"peak torque", "N m"};
-    case TrackingQuantity::rms_torque:
-      return {"RMS torque", "N m"};
-    case TrackingQuantity::moving_mass:
-      return {"moving mass", "kg"};
-    default:
-      return required[term.quantity - kFirstRequired];
+  const std::vector<FrontRow>& table = front_table();
+  if (term.quantity >= table.size()) {
+    return required[term.quantity - table.size()];
   }
+  Quantity named = table[term.quantity].named;
+  if (term.quantity == static_cast<std::size_t>(TrackingQuantity::error)) {
+    named.name = describe_error(objective);
+  }
+  return named;
 }
 
 double get_term(const WeightedQuantity& term, const ObjectiveTerms& terms) {
-  switch (static_cast<TrackingQuantity>(term.quantity)) {
-    case TrackingQuantity::error:
-      return terms.error_m;
-    case TrackingQuantity::torque:
-      return terms.torque_n_m;
-    case TrackingQuantity::energy:
-      return terms.energy_j;
-    case TrackingQuantity::duration:
-      return terms.duration_s;
-    case TrackingQuantity::peak_torque:
-      return terms.peak_torque_n_m;
-    case TrackingQuantity::rms_torque:
-      return terms.rms_torque_n_m;
-    case TrackingQuantity::moving_mass:
-      return terms.moving_mass_kg;
-    default:
-      return terms.required[term.quantity - kFirstRequired];
-  }
+  const std::vector<FrontRow>& table = front_table();
+  return term.quantity < table.size() ? terms.*table[term.quantity].value
+                                      : terms.required[term.quantity - table.size()];
 }
 
 }  // namespace
 
 const std::vector<std::string>& tracking_quantity_names() {
-  static const std::vector<std::string> names = {
-      "error", "torque", "energy", "duration", "peak_torque", "rms_torque", "moving_mass"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> keys;
+    for (const FrontRow& row : front_table()) {
+      keys.push_back(row.key);
+    }
+    return keys;
+  }();
   return names;
 }
 

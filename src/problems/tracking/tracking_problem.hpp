@@ -82,8 +82,7 @@ class TrackingProblem final : public Problem {
   // the design is for another robot or another controller.
   std::vector<double> make_vector(const ArmDesign& design) const;
   // Throws Error{usage} if the design is for another robot, for links of another kind (tubes or
-  // scaled sections), or for a controller whose feed-forward
-  // efforts this problem does not compute.
+  // scaled sections), or for a controller whose feed-forward efforts this problem does not compute.
   void check_design(const ArmDesign& design) const;
   // Returns how far the tip of the design's stretched arm sags (tube.hpp), with the load at its tip.
   // The problem must have tubes.

@@ -187,7 +187,7 @@ namespace {
 
 // Returns the file of a design of the front, as winner.toml of the run would have it, and the command
 // that evaluates it; null if the problem cannot be rebuilt or has no such files.
-json make_design_file(const RecordedRun& run, const Candidate& candidate) {
+json make_saved_design(const RecordedRun& run, const Candidate& candidate) {
   if (!run.problem) {
     return nullptr;
   }
@@ -198,14 +198,11 @@ json make_design_file(const RecordedRun& run, const Candidate& candidate) {
       fmt::format("armwright, the front of the run in {}", run.folder.string());
   std::string text;
   if (const TrackingProblem* tracking = run.tracking()) {
-    DesignFile file;
+    DesignFile file =
+        make_design_file(tracking->config().robot, tracking->make_design(candidate.x));
     file.name = fmt::format("front-{}", candidate.evaluation);
     file.title = title;
     file.source = source;
-    file.design = tracking->make_design(candidate.x);
-    for (const Joint& joint : tracking->config().robot.joints) {
-      file.joint_names.push_back(joint.name);
-    }
     text = to_toml(file);
   } else if (has_values(*run.problem->problem)) {
     text = to_toml(ValuesFile{
@@ -248,7 +245,7 @@ json make_front(const RecordedRun& run) {
                       {"on_front", !covered},
                       {"x", result.judged[i].candidate.x},
                       {"evaluation", result.judged[i].candidate.evaluation},
-                      {"file", make_design_file(run, result.judged[i].candidate)}});
+                      {"file", make_saved_design(run, result.judged[i].candidate)}});
   }
   json objectives = json::array();
   for (const Quantity& objective : result.objectives) {

@@ -86,24 +86,6 @@ Interval find_range(const std::vector<Line>& lines, double most) {
 
 }  // namespace
 
-std::vector<PathPlace> sample_path(const std::function<Eigen::VectorXd(double)>& position,
-                                   std::size_t intervals, double step) {
-  std::vector<PathPlace> places;
-  for (std::size_t i = 0; i <= intervals; ++i) {
-    const double s = static_cast<double>(i) / static_cast<double>(intervals);
-    const double middle = std::clamp(s, step, 1 - step);  // one-sided at the ends
-    const Eigen::VectorXd before = position(middle - step), at = position(middle),
-                          after = position(middle + step);
-    PathPlace place{.q = at,
-                    .q_s = (after - before) / (2 * step),
-                    .q_ss = (after - 2 * at + before) / (step * step)};
-    place.q_s += (s - middle) * place.q_ss;
-    place.q = position(s);
-    places.push_back(std::move(place));
-  }
-  return places;
-}
-
 std::vector<PathPlace> sample_path(const Eigen::MatrixXd& positions) {
   // The weights of the five places for the derivative at the first, second and third of them, over 12
   // times the step or its square. At the fourth and fifth, the order is reversed.

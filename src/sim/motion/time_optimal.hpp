@@ -16,7 +16,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,10 +36,6 @@ struct PathPlace {
   Eigen::VectorXd q, q_s, q_ss;
 };
 
-// Returns the path's places at s = 0, 1/n .. 1, from joint positions there and at `step` beside each:
-// central differences of second order.
-std::vector<PathPlace> sample_path(const std::function<Eigen::VectorXd(double)>& position,
-                                   std::size_t intervals, double step = 1e-4);
 // Returns the path's places from joint positions at even s (one row per joint, one column per place, at
 // least five): differences of five places, of fourth order in q_s and of third order or more in q_ss.
 std::vector<PathPlace> sample_path(const Eigen::MatrixXd& positions);

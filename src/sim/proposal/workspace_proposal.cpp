@@ -114,7 +114,7 @@ Eigen::Vector2d find_front(const NumericKinematics& kinematics, const RobotModel
                                                              : Eigen::Vector2d::UnitX();
 }
 
-// What the arm must keep clear of: the task's floor and obstacles. Keeps references.
+// The floor and the obstacles of a task, from which the arm stays clear. Keeps references.
 class Cell {
  public:
   Cell(const RobotModel& robot, const NumericKinematics& kinematics, const TrackingTask& task)

@@ -58,8 +58,8 @@ struct WorkspaceProposal {
   std::optional<double> floor_m;
 };
 // Returns a proposal for a task. Uses `points` of `sphere`, and the task's floor, clearance and
-// tool.axis; tool.turn need not be set. A task without floor gets one at height 0 if the arm stands above it
-// and can work there. `orientation` is the one to track; nothing: the first possible one.
+// tool.axis; tool.turn need not be set. A task without floor gets one at height 0 if the arm stands
+// above it and can work there. `orientation` is the one to track; nothing: the first possible one.
 // Returns nothing if no place is found where the tool can move. Throws Error{bad_data} if the
 // orientation is not possible, if the tip moves neither in space nor in a plane, and if the motors
 // cannot hold the arm.

@@ -1,6 +1,5 @@
 #include "sim/robot/tube.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -17,18 +16,22 @@ double Tube::second_moment_m4() const {
   return pi / 64 * (std::pow(diameter_m, 4) - std::pow(bore_m(), 4));
 }
 
-double get_link_length_m(const RobotModel& robot, std::size_t link) {
-  return (link + 1 == robot.joint_count() ? robot.tip_pose : robot.joints[link + 1].origin)
-      .translation()
-      .norm();
+Eigen::Isometry3d& get_link_end(RobotModel& robot, std::size_t link) {
+  return link + 1 == robot.joint_count() ? robot.tip_pose : robot.joints[link + 1].origin;
 }
 
-void make_tube(RobotModel& robot, std::size_t link, const Tube& wanted,
+const Eigen::Isometry3d& get_link_end(const RobotModel& robot, std::size_t link) {
+  return link + 1 == robot.joint_count() ? robot.tip_pose : robot.joints[link + 1].origin;
+}
+
+double get_link_length_m(const RobotModel& robot, std::size_t link) {
+  return get_link_end(robot, link).translation().norm();
+}
+
+void make_tube(RobotModel& robot, std::size_t link, const Tube& tube,
                const TubeMaterial& material) {
-  const Tube tube{wanted.diameter_m, std::min(wanted.wall_m, wanted.diameter_m / 2)};
   const bool is_last = link + 1 == robot.joint_count();
-  const Eigen::Vector3d end =
-      (is_last ? robot.tip_pose : robot.joints[link + 1].origin).translation();
+  const Eigen::Vector3d end = get_link_end(robot, link).translation();
   const double length = end.norm();
   assert(length > 0);
   const double mass = material.density_kg_per_m3 * tube.section_m2() * length;

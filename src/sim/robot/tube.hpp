@@ -11,6 +11,8 @@
 //   deflection = sum_i (w_i + phi_i (L_(i+1) + ... + L_n)).
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,12 +28,12 @@ struct TubeMaterial {
 
 struct Tube {
   double diameter_m = 0;  // D, outside
-  double wall_m = 0;      // w, at most D / 2
+  double wall_m = 0;      // w; from D / 2 on, the tube is a bar
 
   bool operator==(const Tube&) const = default;
-  double bore_m() const { return diameter_m - 2 * wall_m; }  // d
-  double section_m2() const;                                 // A
-  double second_moment_m4() const;                           // I
+  double bore_m() const { return std::max(0.0, diameter_m - 2 * wall_m); }  // d
+  double section_m2() const;                                                // A
+  double second_moment_m4() const;                                          // I
 };
 
 // The bounds of a number that is a variable.
@@ -47,14 +49,15 @@ struct ArmTubes {
   std::optional<double> deflection_limit_m;  // nothing: no limit
 };
 
+// Return the pose, in the link's frame, of the link's end: of the next joint, or of the tip.
+Eigen::Isometry3d& get_link_end(RobotModel& robot, std::size_t link);
+const Eigen::Isometry3d& get_link_end(const RobotModel& robot, std::size_t link);
 // Returns the length (m) of a link: from its joint to the next one, or to the tip.
 double get_link_length_m(const RobotModel& robot, std::size_t link);
 
 // Makes the link a tube between its joint and the next one, with nothing else on it, except that the
-// last link carries the payload of the robot, if it has one. The link's length must be above 0. A
-// wall above the radius makes a bar.
-void make_tube(RobotModel& robot, std::size_t link, const Tube& wanted,
-               const TubeMaterial& material);
+// last link carries the payload of the robot, if it has one. The link's length must be above 0.
+void make_tube(RobotModel& robot, std::size_t link, const Tube& tube, const TubeMaterial& material);
 
 // Returns the deflection (m) of an arm whose links are these tubes, with a point mass at the tip.
 double calc_deflection_m(std::span<const Tube> tubes, std::span<const double> lengths_m,

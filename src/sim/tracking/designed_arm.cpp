@@ -64,15 +64,14 @@ RobotModel stretch_link(RobotModel model, std::size_t link, double length_scale,
   if (length_scale == 1 && section_scale == 1) {
     return model;
   }
-  const bool is_last = link + 1 == model.joint_count();
-  Eigen::Isometry3d& end = is_last ? model.tip_pose : model.joints[link + 1].origin;
+  Eigen::Isometry3d& end = get_link_end(model, link);
   const double length_m = end.translation().norm();
   if (length_m == 0) {
     throw Error(ErrorKind::bad_data,
                 fmt::format("robot '{}': link '{}' cannot be stretched: {} lies in its own joint, "
                             "which leaves no direction",
                             sanitize(model.name), sanitize(model.links[link].name),
-                            is_last ? "the tip" : "the next joint"));
+                            link + 1 == model.joint_count() ? "the tip" : "the next joint"));
   }
   const Eigen::Vector3d direction = end.translation() / length_m;
   const Eigen::Matrix3d map = make_stretch(direction, length_scale, section_scale);
@@ -121,9 +120,7 @@ std::shared_ptr<const ArmClearance> make_clearance(const ArmClearance& nominal,
     if (!is_tube && (!capsule || (its.length_scale == 1 && its.section_scale == 1))) {
       continue;
     }
-    const bool is_last = i + 1 == robot.joint_count();
-    const Eigen::Vector3d end =
-        (is_last ? robot.tip_pose : robot.joints[i + 1].origin).translation();
+    const Eigen::Vector3d end = get_link_end(robot, i).translation();
     if (is_tube) {
       capsule = Capsule{Eigen::Vector3d::Zero(), its.length_scale * end, its.tube.diameter_m / 2};
       continue;
@@ -153,7 +150,7 @@ double calc_deflection_m(const RobotModel& nominal, const ArmDesign& design,
   std::vector<double> lengths_m;
   for (std::size_t i = 0; i < design.joints.size(); ++i) {
     const JointDrive& its = design.joints[i];
-    tubes.push_back({its.tube.diameter_m, std::min(its.tube.wall_m, its.tube.diameter_m / 2)});
+    tubes.push_back(its.tube);
     lengths_m.push_back(its.length_scale * get_link_length_m(nominal, i));
   }
   return calc_deflection_m(tubes, lengths_m, material, payload_kg, gravity_m_per_s2);

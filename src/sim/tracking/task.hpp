@@ -65,7 +65,7 @@ struct TrackingTask {
   LimitPolicy limits = LimitPolicy::ignore;
   // The height in the world below which no link may be (floor_clearance.hpp). Nothing: no floor.
   std::optional<double> floor_m;
-  // What the links must keep clear of, by `clearance_m`. Null: of nothing.
+  // The obstacles and links from which the links stay `clearance_m` away or more. Null: there are none.
   std::shared_ptr<const ArmClearance> clearance;
   double clearance_m = 0;
   ToolTask tool;

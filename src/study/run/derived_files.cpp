@@ -111,15 +111,11 @@ std::string make_front_csv(const RunResult& result) {
 std::string make_winner_toml(const RunPlan& plan, const RunResult& result,
                              const std::vector<double>& x) {
   const TrackingProblem& tracking = *plan.problem.tracking();
-  DesignFile file;
+  DesignFile file = make_design_file(tracking.config().robot, tracking.make_design(x));
   file.name = make_run_name(plan);
   file.title = fmt::format("Winner of {} on {}", plan.optimizer.name, plan.problem.name);
   file.source = fmt::format("armwright, {} with seed {}; the manifest.json of its run says all",
                             plan.optimizer.name, plan.seed);
-  file.design = tracking.make_design(x);
-  for (const Joint& joint : tracking.config().robot.joints) {
-    file.joint_names.push_back(joint.name);
-  }
   std::string toml = to_toml(file);
   if (result.test_summary.mean) {
     toml = fmt::format("# Mean error on {} ({} cases): {} m, {} failed.\n", result.test_set,

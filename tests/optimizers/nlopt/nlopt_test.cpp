@@ -186,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(Rows, NloptConstraints,
 TEST(Nlopt, SlsqpCountsItsDifferencesAndIsExactOnAQuadraticFunction) {
   const auto problem = make_analytic("constrained");
   const MemoryEvaluator central = run_optimizer("nlopt:slsqp", *problem, {.budget = 1000});
-  // Of the points on the limit, those a rounding inside count.
+  // A point on the limit counts only if rounding puts it inside.
   EXPECT_NEAR(*central.best(), -44, 1e-4);
   EXPECT_LT(central.trace().size(), 500u);
   const MemoryEvaluator forward =

@@ -15,7 +15,7 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 double find_time(double gravity, std::size_t intervals, std::vector<double> efforts) {
   const std::vector<double> none(3, kNoLimit);
   const LeastTime least =
-      calc_least_time(make_line_arm(), gravity, sample_path(find_line_posture, intervals),
+      calc_least_time(make_line_arm(), gravity, sample_path(find_line_postures(intervals)),
                       {none, none, none, std::move(efforts)});
   EXPECT_FALSE(least.stuck_place);
   return least.duration_s;
@@ -47,7 +47,7 @@ TEST(TimeOptimal, OneJointAcceleratesAndBrakes) {
   robot.links.resize(1);
   robot.links[0].inertial.mass_kg = 1;
   robot.links[0].inertial.inertia_kg_m2 = 0.5 * Eigen::Matrix3d::Identity();
-  const auto path = sample_path([](double s) { return Eigen::VectorXd::Constant(1, 2 * s); }, 400);
+  const auto path = sample_path(Eigen::RowVectorXd::LinSpaced(401, 0, 2));
   JointLimits limits{{kNoLimit}, {kNoLimit}, {kNoLimit}, {3}};
   EXPECT_NEAR(calc_least_time(robot, 0, path, limits).duration_s, 2 * std::sqrt(2 * 0.5 / 3), 1e-3);
   limits.speed = {0.8};
@@ -61,7 +61,7 @@ TEST(TimeOptimal, OneJointAcceleratesAndBrakes) {
 TEST(TimeOptimal, NamesThePlaceAndTheJointThatCannotHoldTheArm) {
   const std::vector<double> none(3, kNoLimit);
   const LeastTime least =
-      calc_least_time(make_line_arm(), 9.80665, sample_path(find_line_posture, 100),
+      calc_least_time(make_line_arm(), 9.80665, sample_path(find_line_postures(100)),
                       {none, none, none, {10, 5, 4}});
   ASSERT_TRUE(least.stuck_place);
   EXPECT_EQ(least.stuck_joint, 1u);
