@@ -16,7 +16,7 @@
 namespace armwright {
 namespace {
 
-// 700 evaluations with either engine, for the fast one of a hundred cases each, or in races of 35
+// 420 evaluations with either engine, for the fast one of a hundred cases each, or in races of 35
 // candidates on 3880 cases: long enough to be killed ten times.
 struct Setting {
   const char* name;
@@ -43,7 +43,7 @@ std::vector<std::string> make_command(const Setting& setting, const std::string&
 void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b) {
   const JournalContent first = read_journal(a / "journal");
   const JournalContent second = read_journal(b / "journal");
-  EXPECT_EQ(first.training.size(), 700u);
+  EXPECT_EQ(first.training.size(), 420u);
   ASSERT_EQ(first.training.size(), second.training.size());
   for (std::size_t i = 0; i < first.training.size(); ++i) {
     const EvaluationRecord& one = first.training[i];
@@ -93,10 +93,10 @@ TEST_P(KillAndResume, TenKillsAndAnyNumberOfThreadsChangeNothing) {
 
 INSTANTIATE_TEST_SUITE_P(
     Engines, KillAndResume,
-    testing::Values(Setting{"ode", "ode", "fresh:1", "none", "700"},
-                    Setting{"articulated", "articulated", "fresh:100", "none", "70000"},
-                    Setting{"races", "articulated", "fixed:400", "halving:40:2", "77600"},
-                    Setting{"coevolution", "articulated", "coevolution:100", "none", "70000"}),
+    testing::Values(Setting{"ode", "ode", "fresh:1", "none", "420"},
+                    Setting{"articulated", "articulated", "fresh:100", "none", "42000"},
+                    Setting{"races", "articulated", "fixed:400", "halving:40:2", "46560"},
+                    Setting{"coevolution", "articulated", "coevolution:100", "none", "42000"}),
     [](const auto& test) { return test.param.name; });
 
 }  // namespace
