@@ -77,9 +77,7 @@ async function find_faults_of_report(address, name) {
     const theme = await page.evaluate(() => document.documentElement.dataset.theme);
     for (const tab of await list_tabs(page)) {
       await open_tab(page, tab);
-      await page.waitForFunction(() =>
-        Array.from(document.querySelectorAll('.plot')).every((plot) => plot.querySelector('svg') !== null),
-      );
+      await page.waitForFunction(() => Array.from(document.querySelectorAll('.plot')).every((plot) => plot.querySelector('svg') !== null));
       const place = `${name}, ${tab}, ${size.width} px, ${theme}`;
       found.push(...(await find_violations(page, place)), ...(await find_silent_charts(page, place)));
       const tables = page.locator('figure .buttons button:has-text("Table")');
