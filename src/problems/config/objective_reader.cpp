@@ -107,9 +107,9 @@ const Setting<std::string> kObjectiveKind{
 const Setting<std::vector<std::string>> kObjectiveQuantities{
     "quantities", kNoDefault,
     "what is minimised. In a front: error, torque, energy, duration, peak_torque, rms_torque, "
-    "moving_mass, and the quantity of a [[requirement]]. For the kind motion: duration (the "
-    "default), jerk, energy, peak_torque, rms_torque, clearance (made large), deflection and "
-    "tool_speed"};
+    "moving_mass, deflection (of [tubes]), and the quantity of a [[requirement]]. For the kind "
+    "motion: duration (the default), jerk, energy, peak_torque, rms_torque, clearance (made "
+    "large), deflection and tool_speed"};
 
 const SettingTable kObjectiveSettings{
     .key = "objective",
@@ -230,6 +230,11 @@ void read_front(const ConfigTable& table, TrackingConfig& config) {
     }
     if (quantity == Of::moving_mass && !has_mass_metric(config)) {
       refuse_constant(i, "add length_scale or section_scale to variables.optimize, or [motors]");
+    }
+    if (quantity == Of::deflection && (!has_deflection_metric(config) || !changes_links(config))) {
+      refuse_constant(i,
+                      "give the arm [tubes], and add tube_diameter, tube_wall or length_scale to "
+                      "variables.optimize");
     }
     if (!table.has(kObjectiveScales)) {
       terms[i].scale = quantity == Of::error    ? objective.error_scale_m

@@ -12,6 +12,7 @@
 
 #include "problems/interface/add_outcome.hpp"
 #include "problems/tracking/tracking_problem.hpp"
+#include "sim/kinematics/floor_clearance.hpp"
 #include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {
@@ -65,16 +66,15 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   if (has_mass_metric(config_)) {
     terms.moving_mass_kg = calc_moving_mass_kg(make_robot(design)) + config_.task.load_kg;
   }
+  if (has_deflection_metric(config_)) {
+    terms.deflection_m = calc_deflection_m(design);
+  }
   terms.required = calc_worst_required(outcomes, case_metrics::first_requirement(joints),
                                        config_.requirements.size());
   evaluation.objectives = calc_objectives(objective, terms);
   evaluation.constraint_values = calc_constraints(objective, terms);
-  double deflection_m = 0;
-  if (has_deflection_metric(config_)) {
-    deflection_m = calc_deflection_m(design);
-    if (const auto& limit_m = config_.tubes.deflection_limit_m) {
-      evaluation.constraint_values.push_back(deflection_m / *limit_m - 1);
-    }
+  if (const auto& limit_m = config_.tubes.deflection_limit_m) {
+    evaluation.constraint_values.push_back(terms.deflection_m / *limit_m - 1);
   }
   append_constraints(config_.requirements, terms.required, evaluation.constraint_values);
   // A case with an error has residuals if they were asked for and the case was not abandoned.
@@ -96,7 +96,7 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
     evaluation.metrics.push_back(terms.moving_mass_kg);
   }
   if (has_deflection_metric(config_)) {
-    evaluation.metrics.push_back(deflection_m);
+    evaluation.metrics.push_back(terms.deflection_m);
   }
   for (std::size_t i = 0; i < joints; ++i) {
     evaluation.metrics.push_back(peak_efforts[i]);
@@ -118,6 +118,8 @@ std::vector<double> TrackingProblem::calc_case_objectives(std::span<const double
       terms.duration_s = value;
     } else if (name == "moving_mass") {
       terms.moving_mass_kg = value;
+    } else if (name == "deflection") {
+      terms.deflection_m = value;
     } else if (name.ends_with(".peak_effort")) {
       terms.peak_torque_n_m += value;
     } else if (name.ends_with(".rms_effort")) {
@@ -160,7 +162,8 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
   // The error is ten times that of a design that is cut off at the first point of every case. The
   // torque is the most that the bounds allow, or ten times that if only torque is minimised. The
   // energy is that of this torque over one turn of every joint per move. The mass is that of the
-  // largest arm, and a requirement counts more than the worst training case.
+  // largest arm, the deflection is the arm's length, and a requirement counts more than the worst
+  // training case.
   const TrackingObjective& objective = config_.objective;
   ArmDesign strongest = config_.start;
   for (const DesignParameter& parameter : config_.parameters) {
@@ -192,6 +195,7 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
     }
     terms.moving_mass_kg = calc_moving_mass_kg(make_robot(largest)) + config_.task.load_kg;
   }
+  terms.deflection_m = calc_arm_length_m(config_.robot);
   for (const Requirement& requirement : config_.requirements) {
     terms.required.push_back(2 * kWorstRatio * requirement.limit);
   }

@@ -86,6 +86,7 @@ const std::vector<FrontRow>& front_table() {
       {"peak_torque", {"peak torque", "N m"}, &ObjectiveTerms::peak_torque_n_m},
       {"rms_torque", {"RMS torque", "N m"}, &ObjectiveTerms::rms_torque_n_m},
       {"moving_mass", {"moving mass", "kg"}, &ObjectiveTerms::moving_mass_kg},
+      {"deflection", {"deflection", "m"}, &ObjectiveTerms::deflection_m},
   };
   return table;
 }

@@ -30,8 +30,9 @@
 // local methods from libraries.
 //
 // Quantities of a front (TrackingQuantity): e, tau, E and T; the sums over the joints of the largest
-// effort of all cases, and of the mean over the cases of the root mean square; the moving mass. After
-// them, the worst value of each requirement over the cases (requirement.hpp).
+// effort of all cases, and of the mean over the cases of the root mean square; the moving mass; the
+// deflection of an arm of tubes (tube.hpp). After them, the worst value of each requirement over the
+// cases (requirement.hpp).
 //
 // A limit is one constraint, g = e / e_max - 1 or tau / tau_max - 1, for logarithms too. In e, each
 // point of a training case from its cut-off or divergence on counts as the cut-off error (1 m by
@@ -75,6 +76,7 @@ enum class TrackingQuantity : std::uint8_t {
   peak_torque,
   rms_torque,
   moving_mass,
+  deflection,
   requirement
 };
 // Returns the names in the order of the enum, without `requirement`.
@@ -124,6 +126,7 @@ struct ObjectiveTerms {
   double duration_s = 0;  // T
   double peak_torque_n_m = 0, rms_torque_n_m = 0;
   double moving_mass_kg = 0;
+  double deflection_m = 0;
   std::vector<double> required = {};  // the worst value of each requirement
 };
 

@@ -98,6 +98,22 @@ TEST(DesignTubes, GiveTheMassesTheMetricsAndTheConstraint) {
   EXPECT_NEAR(evaluation.constraint_values[0], deflection_m / 0.002 - 1, 1e-10);
 }
 
+TEST(DesignTubes, GiveMassAndDeflectionToAFront) {
+  const auto problem = load_tracking(
+      "co-design", join_settings(join_settings(kTubes, kSizes),
+                                 {"objective.kind=front",
+                                  R"(objective.quantities=["error","moving_mass","deflection"])"}));
+  const ArmDesign start = problem->config().start;
+  const Evaluation evaluation = problem->evaluate(get_start(*problem), kFirstCase);
+  ASSERT_EQ(evaluation.objectives.size(), 3u);
+  EXPECT_EQ(evaluation.objectives[1],
+            calc_moving_mass_kg(problem->make_robot(start)) + problem->config().task.load_kg);
+  EXPECT_EQ(evaluation.objectives[2], problem->calc_deflection_m(start));
+  EXPECT_EQ(problem->description().objectives[2].unit, "m");
+  const std::vector<double> penalty = problem->penalty_objectives();
+  EXPECT_GT(penalty[2], 100 * evaluation.objectives[2]);
+}
+
 // The problem's own tubes need no setup of their own, and a thicker tube is another arm.
 TEST(DesignTubes, OfADesignReplaceThoseOfTheProblem) {
   const auto problem =

@@ -251,13 +251,15 @@ TEST(Front, HasEachQuantityAsAnObjectiveInTheOrderOfTheFile) {
   objective.set_front({make_term(Q::energy, 2, 100), make_term(Q::error, 4, 0.5),
                        make_term(Q::requirement, 1, 1), make_term(Q::peak_torque, 1, 1),
                        make_term(Q::rms_torque, 1, 1), make_term(Q::moving_mass, 1, 1),
-                       make_term(Q::duration, 1, 1), make_term(Q::torque, 1, 1)});
+                       make_term(Q::duration, 1, 1), make_term(Q::torque, 1, 1),
+                       make_term(Q::deflection, 1, 1)});
   ObjectiveTerms terms{.error_m = 1, .torque_n_m = 2, .energy_j = 3, .duration_s = 4};
   terms.peak_torque_n_m = 5;
   terms.rms_torque_n_m = 6;
   terms.moving_mass_kg = 7;
   terms.required = {8};
-  EXPECT_THAT(calc_objectives(objective, terms), ElementsAre(3, 1, 8, 5, 6, 7, 4, 2));
+  terms.deflection_m = 9;
+  EXPECT_THAT(calc_objectives(objective, terms), ElementsAre(3, 1, 8, 5, 6, 7, 4, 2, 9));
   const std::vector<Quantity> required = {{"overshoot", "1"}};
   const std::vector<Quantity> objectives = describe_objectives(objective, required);
   EXPECT_EQ(objectives[0].name, "energy");
@@ -356,6 +358,9 @@ TEST(Front, SaysWhatIsWrong) {
                                  "variables.task = [\"speed\"]"));
   EXPECT_THAT(refuse("quantities = ['error', 'moving_mass']"),
               testing::HasSubstr("'moving_mass' is the same for all designs here"));
+  EXPECT_THAT(refuse("quantities = ['error', 'deflection']"),
+              testing::HasSubstr("'deflection' is the same for all designs here; give the arm "
+                                 "[tubes], and add tube_diameter, tube_wall or length_scale"));
   EXPECT_THAT(refuse("quantities = ['error', 'error']"), testing::HasSubstr("stands there twice"));
   EXPECT_THAT(refuse("quantities = ['error', 'energy']\nscales = [1]"),
               testing::HasSubstr("it must hold 2 numbers, one per quantity"));
