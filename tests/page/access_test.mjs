@@ -23,7 +23,7 @@ let browser;
 const site = mkdtempSync(join(tmpdir(), 'armwright-site-'));
 before(async () => {
   await build_site(kRoot, site);
-  browser = await open_browser();
+  browser = await open_browser({ reducedMotion: 'reduce' });
 });
 after(async () => {
   await browser.close();

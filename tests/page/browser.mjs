@@ -19,7 +19,8 @@ const kFlags = [
   '--no-sandbox',
 ];
 
-export async function open_browser() {
+// `options` are Playwright's for the context: with reducedMotion no animation takes processor time.
+export async function open_browser(options = {}) {
   assert.ok(existsSync(kProgram), `${kProgram} is missing: install the Debian package chromium (scripts/setup does)`);
   const profile = mkdtempSync(join(tmpdir(), 'armwright-chromium-'));
   const context = await chromium.launchPersistentContext(profile, {
@@ -29,6 +30,7 @@ export async function open_browser() {
     viewport: { width: 1280, height: 900 },
     colorScheme: 'light',
     acceptDownloads: true,
+    ...options,
   });
   return {
     context,

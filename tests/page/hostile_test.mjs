@@ -20,7 +20,7 @@ const kNames = [
 
 let browser;
 before(async () => {
-  browser = await open_browser();
+  browser = await open_browser({ reducedMotion: 'reduce' });
 });
 after(() => browser.close());
 

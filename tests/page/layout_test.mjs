@@ -14,7 +14,7 @@ const kHeight = 844; // pixels, of a telephone's screen
 
 let browser;
 before(async () => {
-  browser = await open_browser();
+  browser = await open_browser({ reducedMotion: 'reduce' });
 });
 after(() => browser.close());
 
