@@ -12,7 +12,7 @@
 
 #include "problems/interface/add_outcome.hpp"
 #include "problems/tracking/tracking_problem.hpp"
-#include "sim/kinematics/floor_clearance.hpp"
+#include "sim/robot/tube.hpp"
 #include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {
@@ -195,7 +195,9 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
     }
     terms.moving_mass_kg = calc_moving_mass_kg(make_robot(largest)) + config_.task.load_kg;
   }
-  terms.deflection_m = calc_arm_length_m(config_.robot);
+  for (std::size_t link = 0; link < config_.tubes.tubes.size(); ++link) {
+    terms.deflection_m += get_link_length_m(config_.robot, link);
+  }
   for (const Requirement& requirement : config_.requirements) {
     terms.required.push_back(2 * kWorstRatio * requirement.limit);
   }
