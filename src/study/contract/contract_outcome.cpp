@@ -48,7 +48,7 @@ double calc_median_success(const ContractTrial& trial, std::int64_t budget) {
 
 ContractFinding check_leaks(const OptimizerRow& row, const Options& options) {
   const auto problem = make_contract_problems(row).at(0);
-  // Whoever has a limit of evaluations has built its models after 40 of them.
+  // An optimizer with a limit of evaluations is slow, and has built its models after 40 of them.
   const std::int64_t budget = row.limits.evaluations > 0 ? 40 : 100;
   const auto run = [&] {
     for (int i = 0; i < 10; ++i) {
