@@ -30,16 +30,75 @@ after(async () => {
   rmSync(site, { recursive: true, force: true });
 });
 
+// Runs axe-core in the page, on what is now on the screen, and returns its violations. Before, the function takes out
+// what cannot add a finding, and puts it back after. This is the drawing of a chart: axe-core has no rule for its
+// parts, and it cannot tell the ground of a text in an SVG. It is also each row of a table that repeats an earlier one:
+// the same elements with the same attributes and computed colours, and texts in the same places.
+async function run_axe(options) {
+  const undo = [];
+  const put = (one, other) => {
+    one.replaceWith(other);
+    undo.push(() => other.replaceWith(one));
+  };
+  document.querySelectorAll('.plot svg').forEach((svg) => put(svg, document.createComment('svg')));
+
+  const describe = (element) => {
+    const { color, backgroundColor, backgroundImage, fontSize, fontWeight, opacity, visibility, display } = getComputedStyle(element);
+    const attributes = Array.from(element.attributes, ({ name, value }) => `${name}=${name === 'title' ? value.trim() !== '' : value}`);
+    const texts = Array.from(element.childNodes, (node) =>
+      node.nodeType === Node.ELEMENT_NODE ? describe(node) : node.textContent.trim().slice(0, 2).length,
+    );
+    return [
+      element.tagName,
+      attributes,
+      color,
+      backgroundColor,
+      backgroundImage,
+      fontSize,
+      fontWeight,
+      opacity,
+      visibility,
+      display,
+      texts,
+    ];
+  };
+  for (const body of document.querySelectorAll('tbody')) {
+    const known = new Set();
+    const repeated = Array.from(body.rows).filter((row) => {
+      const description = JSON.stringify(describe(row));
+      return known.size === known.add(description).size;
+    });
+    if (repeated.length > 0) {
+      // The box of the table is cut as before.
+      const table = body.closest('table');
+      const { minWidth } = table.style;
+      const heights = repeated.map((row) => row.offsetHeight);
+      table.style.minWidth = `${table.offsetWidth}px`;
+      undo.push(() => (table.style.minWidth = minWidth));
+      repeated.forEach((row, i) => {
+        const gap = document.createElement('tr');
+        gap.style.height = `${heights[i]}px`;
+        put(row, gap);
+      });
+    }
+  }
+
+  const { violations } = await globalThis.axe.run(document, { resultTypes: ['violations'], ...options });
+  undo.reverse().forEach((step) => step());
+  return violations.map(({ impact, id, help, nodes }) => ({ impact, id, help, nodes: nodes.slice(0, 1), count: nodes.length }));
+}
+
 // Returns one sentence per violation that axe-core finds in what is now on the screen. Playwright evaluates its
-// source, so that the pages' content security policy stays as it is.
+// source, so that the pages' content security policy stays as it is. Axe-core names the places of its findings in a
+// second run, because it would name the place of each element that it looks at.
 async function find_violations(page, place) {
   if (!(await page.evaluate(() => 'axe' in globalThis))) {
     await page.evaluate(kAxe);
   }
-  const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
-  return violations.map(({ impact, id, help, nodes }) => {
-    const { target, html, any } = nodes[0];
-    return `${place}: ${impact}: ${id}: ${help}; ${nodes.length} of ${target.join(' ')}: ${html.slice(0, 160)} ${any[0]?.message ?? ''}`;
+  const found = await page.evaluate(run_axe, { selectors: false });
+  const named = found.length === 0 ? [] : await page.evaluate(run_axe, {});
+  return (named.length < found.length ? found : named).map(({ impact, id, help, nodes: [{ target, html, any }], count }) => {
+    return `${place}: ${impact}: ${id}: ${help}; ${count} of ${target?.join(' ')}: ${html.slice(0, 160)} ${any[0]?.message ?? ''}`;
   });
 }
 
@@ -107,28 +166,34 @@ test('axe-core finds nothing on the page of a study under way', async () => {
   assert.deepEqual(found, []);
 });
 
-async function find_violations_of_text(file, name, prepare = async () => {}) {
+// Opens the file on a screen in one of the `themes` and on a telephone in the other.
+async function find_violations_of_text(file, name, themes, prepare = async () => {}) {
   const page = await browser.context.newPage();
   const found = [];
-  for (const size of kSizes) {
+  for (const [i, size] of kSizes.entries()) {
+    const colorScheme = themes[i];
     await page.setViewportSize(size);
-    for (const colorScheme of ['light', 'dark']) {
-      await page.emulateMedia({ colorScheme });
-      await page.goto(pathToFileURL(file).href);
-      await prepare(page);
-      found.push(...(await find_violations(page, `${name}, ${size.width} px, ${colorScheme}`)));
-    }
+    await page.emulateMedia({ colorScheme });
+    await page.goto(pathToFileURL(file).href);
+    await prepare(page);
+    found.push(...(await find_violations(page, `${name}, ${size.width} px, ${colorScheme}`)));
   }
   await page.close();
   return found;
 }
 
+const kThemes = ['light', 'dark'];
+const kOtherThemes = ['dark', 'light'];
+
 test('axe-core finds nothing on a data sheet', async () => {
-  assert.deepEqual(await find_violations_of_text(make_datasheet('datasheet-for-access'), 'data sheet'), []);
+  const file = make_datasheet('datasheet-for-access');
+  assert.deepEqual(await find_violations_of_text(file, 'data sheet', kThemes), []);
+  assert.deepEqual(await find_violations_of_text(file, 'data sheet', kOtherThemes), []);
 });
 
-// The first page, tables, sessions, code of several languages, pictures, long tables.
-for (const place of [
+// The first page, tables, sessions, code of several languages, pictures, long tables. Every second page has the themes
+// the other way round.
+for (const [i, place] of [
   'index.html',
   'tutorials/tune.html',
   'tutorials/add-an-optimizer.html',
@@ -138,9 +203,9 @@ for (const place of [
   'optimizers/index.html',
   'optimizers/cmaes.html',
   'changelog.html',
-]) {
+].entries()) {
   test(`axe-core finds nothing on the site's page ${place}`, async () => {
-    assert.deepEqual(await find_violations_of_text(join(site, place), place), []);
+    assert.deepEqual(await find_violations_of_text(join(site, place), place, i % 2 === 0 ? kThemes : kOtherThemes), []);
   });
 }
 
@@ -149,7 +214,9 @@ test('axe-core finds nothing while the search is open', async () => {
     await page.fill('#search', 'tune a robot');
     await page.waitForSelector('#found a');
   };
-  assert.deepEqual(await find_violations_of_text(join(site, 'verify.html'), 'search', search), []);
+  for (const themes of [kThemes, kOtherThemes]) {
+    assert.deepEqual(await find_violations_of_text(join(site, 'verify.html'), 'search', themes, search), []);
+  }
 });
 
 // Presses Tab until the focus leaves the page or comes around. Returns what had the focus, and complains about each

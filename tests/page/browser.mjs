@@ -90,3 +90,13 @@ export async function find_figure(page, id) {
   await card.scrollIntoViewIfNeeded();
   return card;
 }
+
+// Returns the centres of the small shapes of a figure's chart, such as its points, in pixels of the screen.
+export async function list_points(card) {
+  return card.locator('.plot svg path').evaluateAll((shapes) =>
+    shapes
+      .map((shape) => shape.getBoundingClientRect())
+      .filter(({ width, height }) => Math.min(width, height) > 1 && Math.max(width, height) < 20)
+      .map(({ x, y, width, height }) => [x + width / 2, y + height / 2]),
+  );
+}

@@ -1,5 +1,5 @@
-// What holds for every page: each tab opens, each chart is drawn, each table has rows, at both
-// widths and in both themes, or at each in another one where colours are not the point.
+// What holds for every page: each tab opens, each chart is drawn, each table has a head, at two widths, at each in
+// another theme. The tests of the layout and of access look at other pairs of a width and a theme.
 import assert from 'node:assert/strict';
 import { list_tabs, open_tab } from './browser.mjs';
 
@@ -28,19 +28,18 @@ async function check_tab(page, tab) {
   return cards.map((card) => card.id);
 }
 
-// The names of all figures and tables.
-export async function check_every_tab(page, themes = 2) {
+// Returns the names of all figures and tables. Calls `look` with the name of each tab while the tab is open.
+export async function check_every_tab(page, look = async () => {}) {
   const found = [];
   for (const width of [1280, 1920]) {
     await page.setViewportSize({ width, height: 900 });
-    for (let theme = 0; theme < themes; ++theme) {
-      const names = [];
-      for (const tab of await list_tabs(page)) {
-        names.push(...(await check_tab(page, tab)));
-      }
-      found.splice(0, found.length, ...names);
-      await page.click('.theme');
+    const names = [];
+    for (const tab of await list_tabs(page)) {
+      names.push(...(await check_tab(page, tab)));
+      await look(tab);
     }
+    found.splice(0, found.length, ...names);
+    await page.click('.theme');
   }
   await page.setViewportSize({ width: 1280, height: 900 });
   assert.equal(new Set(found).size, found.length, 'two figures have one name');

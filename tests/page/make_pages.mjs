@@ -7,6 +7,9 @@ import { join } from 'node:path';
 export const kFolder = process.env.ARMWRIGHT_PAGES ?? process.argv[2];
 const kProgram = process.env.ARMWRIGHT;
 
+// The pages show one value per cell of a study, so a study needs fewer than 500 test cases.
+const kFewTests = ['--set', 'sets.test_cases=60'];
+
 export function run_program(...args) {
   return execFileSync(kProgram, args, {
     encoding: 'utf8',
@@ -70,7 +73,7 @@ function make_study() {
   const study = join(kFolder, 'study');
   run_program(
     ...['compare', '--problems', 'q1-complex,q2-e6', '--optimizers', 'ga,cmaes,nlopt:bobyqa', '--replicates', '6'],
-    ...['--budget', '140', '--engine', 'articulated', '--out', study, '--quiet'],
+    ...['--budget', '140', '--engine', 'articulated', ...kFewTests, '--out', study, '--quiet'],
   );
   run_program('report', study, '--out', join(kFolder, 'study.html'), '--quiet');
 }
@@ -83,7 +86,7 @@ function make_comparisons() {
   const study = join(kFolder, 'other-study');
   run_program(
     ...['compare', '--problems', 'q1-complex', '--optimizers', 'ga,cmaes', '--replicates', '6', '--budget', '140'],
-    ...['--engine', 'articulated', '--set', 'sets.validation_cases=20', '--out', study, '--quiet'],
+    ...['--engine', 'articulated', '--set', 'sets.validation_cases=20', ...kFewTests, '--out', study, '--quiet'],
   );
   run_program('report', join(kFolder, 'study'), study, '--out', join(kFolder, 'study-comparison.html'), '--quiet');
 }

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { find_figure, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
+import { find_figure, list_points, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
 import { check_every_tab } from './every_tab.mjs';
 import { kFolder, run_program } from './make_pages.mjs';
 
@@ -93,7 +93,7 @@ test('the first screen of a run has its headlines and the health of the winner',
 test('a run of several objectives and one of a function have pages, too', async () => {
   for (const name of ['front', 'function']) {
     const { page, expect_no_faults } = await open_run(name);
-    const found = await check_every_tab(page, 1);
+    const found = await check_every_tab(page);
     assert.ok(found.includes('fitness'), found.join(', '));
     assert.equal(found.includes('front'), name === 'front');
     assert.equal(found.includes('joint-torques'), name === 'front');
@@ -112,16 +112,14 @@ test('a click on the front picks a design that can be saved and evaluated', asyn
   }
   const card = await find_figure(page, 'front');
   await page.waitForFunction(() => document.querySelectorAll('[data-figure=front] .plot svg path').length > 5);
-  const plot = await card.locator('.plot').boundingBox();
   let said = '';
-  for (let y = 0.1; y < 0.9 && said === ''; y += 0.01) {
-    for (let x = 0.1; x < 0.97 && said === ''; x += 0.01) {
-      await page.mouse.move(plot.x + x * plot.width, plot.y + y * plot.height);
-      const pointed = await card.locator('.plot').evaluate((one) => one.querySelector('.tip')?.textContent ?? '');
-      if (pointed.includes('save this design')) {
-        await page.mouse.click(plot.x + x * plot.width, plot.y + y * plot.height);
-        said = await card.locator('.details').innerText();
-      }
+  for (const [x, y] of await list_points(card)) {
+    await page.mouse.move(x, y);
+    const pointed = await card.locator('.plot').evaluate((one) => one.querySelector('.tip')?.textContent ?? '');
+    if (pointed.includes('save this design')) {
+      await page.mouse.click(x, y);
+      said = await card.locator('.details').innerText();
+      break;
     }
   }
   const name = said.match(/Save (front-\d+\.toml)/)?.[1];
@@ -489,16 +487,15 @@ test('a figure says its numbers: under the pointer, as a table, as CSV, as SVG',
   const card = await find_figure(page, 'distance-response');
   await page.waitForFunction(() => document.querySelectorAll('[data-figure=distance-response] .plot svg path').length > 5);
 
-  // Some point is near one of these places.
-  const box = await card.locator('.plot').boundingBox();
   let shown = '';
-  for (let x = 0.2; x < 0.9 && shown === ''; x += 0.01) {
-    for (let y = 0.15; y < 0.85 && shown === ''; y += 0.02) {
-      await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
-      shown = await card.evaluate((element) => {
-        const tip = element.querySelector('.tip');
-        return tip !== null && tip.offsetParent !== null && getComputedStyle(tip).visibility === 'visible' ? tip.textContent : '';
-      });
+  for (const [x, y] of await list_points(card)) {
+    await page.mouse.move(x, y);
+    shown = await card.evaluate((element) => {
+      const tip = element.querySelector('.tip');
+      return tip !== null && tip.offsetParent !== null && getComputedStyle(tip).visibility === 'visible' ? tip.textContent : '';
+    });
+    if (shown !== '') {
+      break;
     }
   }
   assert.match(shown, /\d/);

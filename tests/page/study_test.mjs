@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { find_figure, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
+import { find_figure, list_points, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
 import { check_every_tab } from './every_tab.mjs';
 import { kFolder, run_program } from './make_pages.mjs';
 
@@ -237,16 +237,14 @@ test('a point of the box plots names its run', async () => {
   const id = await card.getAttribute('data-figure');
   await find_figure(page, id);
   await page.waitForFunction((name) => document.querySelectorAll(`[data-figure="${name}"] .plot svg path`).length > 5, id);
-  const box = await card.locator('.plot').boundingBox();
   let said = '';
-  for (let y = 0.12; y < 0.9 && said === ''; y += 0.015) {
-    for (let x = 0.1; x < 0.97 && said === ''; x += 0.01) {
-      await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
-      const pointed = await card.locator('.plot').evaluate((plot) => plot.querySelector('.tip')?.textContent ?? '');
-      if (pointed.includes('reproduces')) {
-        await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
-        said = await card.locator('.details').innerText();
-      }
+  for (const [x, y] of await list_points(card)) {
+    await page.mouse.move(x, y);
+    const pointed = await card.locator('.plot').evaluate((plot) => plot.querySelector('.tip')?.textContent ?? '');
+    if (pointed.includes('reproduces')) {
+      await page.mouse.click(x, y);
+      said = await card.locator('.details').innerText();
+      break;
     }
   }
   assert.match(said, /armwright rerun /);
