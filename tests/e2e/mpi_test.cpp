@@ -139,6 +139,7 @@ struct UserProblem {
   const char* requirement =
       "true";  // a command of the shell that succeeds where the problem can run
   const char* budget = "20";
+  const char* replicates = "1";
 };
 
 std::ostream& operator<<(std::ostream& out, const UserProblem& problem) {
@@ -153,9 +154,10 @@ class MpiUserProblem : public Mpi, public testing::WithParamInterface<UserProble
 INSTANTIATE_TEST_SUITE_P(
     Problems, MpiUserProblem,
     testing::Values(
-        UserProblem{
-            "Residuals", "exec:python3 " ARMWRIGHT_TEST_PLUGINS_SOURCE "/problem.py slow-squares",
-            "ga,cmaes,lhs,nlopt:cobyla,nlopt:bobyqa,pagmo:de,pagmo:pso,ceres:lm", "true", "60"},
+        UserProblem{"Residuals",
+                    "exec:python3 " ARMWRIGHT_TEST_PLUGINS_SOURCE "/problem.py slow-squares",
+                    "ga,cmaes,lhs,nlopt:cobyla,nlopt:bobyqa,pagmo:de,pagmo:pso,ceres:lm", "true",
+                    "60", "2"},
         UserProblem{"Motor",
                     "exec:/usr/bin/python3 " ARMWRIGHT_CONFIGS "/../examples/dc-motor/motor.py",
                     kEight, "/usr/bin/python3 -c 'import scipy'"},
@@ -174,9 +176,9 @@ TEST_P(MpiUserProblem, ComparesEightOptimizersWithTheSameBytesForAnyThreadsAndRa
   }
   const auto make_command = [&](const std::string& out, const char* jobs) {
     return std::vector<std::string>{
-        "compare",      "--problems", user.problem, "--optimizers", user.optimizers,
-        "--replicates", "2",          "--budget",   user.budget,    "--jobs",
-        jobs,           "--out",      out,          "--quiet"};
+        "compare",      "--problems",    user.problem, "--optimizers", user.optimizers,
+        "--replicates", user.replicates, "--budget",   user.budget,    "--jobs",
+        jobs,           "--out",         out,          "--quiet"};
   };
   const Outcome one = run_program(folder_.path(), make_command("one", "1"));
   ASSERT_EQ(one.exit_code, 0) << one.err;

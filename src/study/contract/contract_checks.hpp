@@ -23,9 +23,9 @@ std::vector<std::shared_ptr<const Problem>> make_contract_problems(const Optimiz
 inline constexpr double kLargestObjective = 11;
 
 // Returns the budget with which a check runs the optimizer. Every evaluation costs much time if the
-// optimizer has a limit of evaluations; a twentieth of the limit is then enough.
+// optimizer has a limit of evaluations; a fortieth of the limit is then enough.
 inline std::int64_t limit_budget(const OptimizerRow& row, std::int64_t budget) {
-  const std::int64_t most = row.limits.evaluations / 20;
+  const std::int64_t most = row.limits.evaluations / 40;
   return most > 0 ? std::min(budget, most) : budget;
 }
 
