@@ -4,9 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <string>
 
+#include "base/decompositions.hpp"
 #include "sim/engines/articulated/articulated_arm.hpp"
 #include "sim/engines/ode/ode_arm.hpp"
 #ifdef ARMWRIGHT_WITH_MUJOCO

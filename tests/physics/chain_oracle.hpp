@@ -14,11 +14,12 @@
 //   g           gravity
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
 #include <vector>
 
+#include "base/decompositions.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace armwright::physics_test {

@@ -1,9 +1,11 @@
 // Estimates the limit of a first-order method, and the error of that estimate.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
+
+#include "base/decompositions.hpp"
 
 namespace armwright::physics_test {
 

@@ -2,11 +2,11 @@
 // De Luca and Siciliano 1991, clamped, with a payload at its end.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "base/decompositions.hpp"
 #include "sim/dynamics/joint_effort.hpp"
 #include "sim/tracking/elasticity.hpp"
 #include "swinging_arms.hpp"

@@ -1,9 +1,10 @@
 // Planar mechanisms in plane coordinates, for equations of motion written by hand.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <vector>
 
+#include "base/decompositions.hpp"
 #include "chain_oracle.hpp"
 
 namespace armwright::physics_test {

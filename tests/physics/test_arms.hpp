@@ -1,7 +1,7 @@
 // Arms of general shape for the physics tests (no zeros, no symmetry), and functions to drive them.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "arm_types.hpp"
+#include "base/decompositions.hpp"
 #include "base/random.hpp"
 #include "chain_oracle.hpp"
 #include "sim/robot/robot_model.hpp"

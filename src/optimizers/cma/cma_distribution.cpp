@@ -1,11 +1,12 @@
 #include "optimizers/cma/cma_distribution.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
+
+#include "base/decompositions.hpp"
 
 namespace armwright {
 namespace {

@@ -1,13 +1,13 @@
 #include "optimizers/cma/cma_surrogate.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numeric>
 #include <utility>
+
+#include "base/decompositions.hpp"
 
 namespace armwright {
 namespace {

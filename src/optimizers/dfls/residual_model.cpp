@@ -1,9 +1,10 @@
 #include "optimizers/dfls/residual_model.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "base/decompositions.hpp"
 
 namespace armwright {
 

@@ -1,9 +1,10 @@
 #include "optimizers/dfls/trust_step.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "base/decompositions.hpp"
 
 namespace armwright {
 namespace {

@@ -1,10 +1,11 @@
 #include "optimizers/fronts/reference_directions.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+
+#include "base/decompositions.hpp"
 
 namespace armwright {
 namespace {

@@ -13,10 +13,10 @@
 // a sum of 256 waves.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <vector>
 
+#include "base/decompositions.hpp"
 #include "base/random.hpp"
 
 namespace armwright {

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "base/decompositions.hpp"
 #include "base/error.hpp"
 
 namespace armwright {

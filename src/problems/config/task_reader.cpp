@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-
+#include "base/decompositions.hpp"
 #include "base/error.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "problems/tracking/tracking_config.hpp"

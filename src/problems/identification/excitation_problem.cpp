@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "base/decompositions.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "problems/interface/add_outcome.hpp"

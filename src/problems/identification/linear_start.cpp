@@ -1,10 +1,10 @@
 #include "problems/identification/linear_start.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/decompositions.hpp"
 #include "sim/tracking/designed_arm.hpp"
 
 namespace armwright {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/decompositions.hpp"
 #include "report/evidence/robot_scene.hpp"
 
 namespace armwright {

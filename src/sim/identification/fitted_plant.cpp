@@ -1,6 +1,6 @@
 #include "sim/identification/fitted_plant.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "base/decompositions.hpp"
 
 namespace armwright {
 namespace {

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <numbers>
 
+#include "base/decompositions.hpp"
 #include "base/random.hpp"
 #include "base/text.hpp"
 #include "sim/kinematics/floor_clearance.hpp"

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "base/decompositions.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "sim/simd/simd_level.hpp"

@@ -1,10 +1,11 @@
 #include "sim/motion/motion_curve.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
+
+#include "base/decompositions.hpp"
 
 namespace armwright {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <span>
 
+#include "base/decompositions.hpp"
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "sim/proposal/resting_arm.hpp"

@@ -1,7 +1,8 @@
 #include "sim/proposal/resting_arm.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
+
+#include "base/decompositions.hpp"
 
 namespace armwright {
 

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
 
+#include "base/decompositions.hpp"
 #include "base/error.hpp"
 #include "base/random.hpp"
 #include "base/read_limit.hpp"

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
+#include "base/decompositions.hpp"
 #include "base/error.hpp"
 #include "sim/robot/mjcf.hpp"
 
 #ifdef ARMWRIGHT_WITH_MUJOCO
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/decompositions.hpp"
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"

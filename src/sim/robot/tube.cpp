@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/decompositions.hpp"
+
 namespace armwright {
 
 using std::numbers::pi;

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
+#include "base/decompositions.hpp"
 #include "base/text.hpp"
 #include "sim/robot/urdf_parts.hpp"
 

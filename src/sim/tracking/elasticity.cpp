@@ -1,12 +1,11 @@
 #include "sim/tracking/elasticity.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "base/decompositions.hpp"
 #include "base/random.hpp"
 #include "sim/dynamics/chain_dynamics.hpp"
 #include "sim/dynamics/chain_model.hpp"
@@ -51,8 +50,8 @@ Eigen::MatrixXd calc_mass(const RobotModel& robot, const articulated::ChainModel
 std::pair<double, Eigen::Index> find_largest(const Eigen::MatrixXd& compliance,
                                              const Eigen::VectorXd& scales) {
   const Eigen::VectorXd roots = scales.cwiseSqrt();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(roots.asDiagonal() * compliance *
-                                                              roots.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+      Eigen::MatrixXd(roots.asDiagonal() * compliance * roots.asDiagonal()));
   const Eigen::Index last = scales.size() - 1;  // eigenvalues come in ascending order
   Eigen::Index part = 0;
   solver.eigenvectors().col(last).cwiseAbs().maxCoeff(&part);

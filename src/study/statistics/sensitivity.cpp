@@ -1,7 +1,6 @@
 #include "study/statistics/sensitivity.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/decompositions.hpp"
 #include "base/random.hpp"
 #include "study/statistics/values.hpp"
 
@@ -98,7 +98,7 @@ Fit fit_ridge(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, ModelTerms kin
   Fit best{.kind = kind, .terms = make_terms(x, kind)};
   const Eigen::MatrixXd& a = best.terms.columns;
   const auto m = static_cast<double>(a.rows());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a.transpose() * a);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(a.transpose() * a));
   const Eigen::VectorXd values = solver.eigenvalues().cwiseMax(0.0);
   const Eigen::MatrixXd scores = a * solver.eigenvectors();
   const Eigen::VectorXd projected = scores.transpose() * y;

@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
+#include "base/decompositions.hpp"
 #include "optimizers/turbo/box_descent.hpp"
 
 namespace armwright {

@@ -2,10 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 
+#include "base/decompositions.hpp"
 #include "base/random.hpp"
 #include "sim/dynamics/arm_equations.hpp"
 #include "sim/generated_arm.hpp"

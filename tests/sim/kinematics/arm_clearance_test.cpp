@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/decompositions.hpp"
 #include "base/random.hpp"
 #include "sim/kinematics/kinematics.hpp"
 #include "sim/support.hpp"

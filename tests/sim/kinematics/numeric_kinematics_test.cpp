@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "base/decompositions.hpp"
 #include "base/expect_error.hpp"
 #include "base/random.hpp"
 #include "sim/generated_arm.hpp"

@@ -1,13 +1,13 @@
 // Tests what the reader repairs, what it still refuses, and that a mended file needs no repair.
 #include <gmock/gmock.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "base/decompositions.hpp"
 #include "base/error.hpp"
 #include "base/temporary_folder.hpp"
 #include "sim/robot/robot_model.hpp"

@@ -3,11 +3,11 @@
 
 #include <gmock/gmock.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/decompositions.hpp"
 #include "base/expect_error.hpp"
 #include "problems/config/plant_file.hpp"
 #include "problems/config/problem_loader.hpp"

@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "base/decompositions.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "sim/kinematics/kinematics.hpp"
