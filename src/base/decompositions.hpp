@@ -1,6 +1,6 @@
-// Eigen's decompositions of matrices, compiled once for the whole program: each takes a compiler several seconds, and some
-// stand in Eigen's functions where nobody sees them (Quaternion::FromTwoVectors decomposes a matrix). Give them matrices:
-// an expression, as a product, is compiled anew.
+// Eigen's decompositions of matrices, compiled once for the whole program. Each takes a compiler
+// several seconds, and some are hidden in Eigen's other functions: Quaternion::FromTwoVectors
+// decomposes a matrix. Pass a matrix to them: an expression, such as a product, is compiled anew.
 #pragma once
 
 #include <Eigen/Cholesky>
