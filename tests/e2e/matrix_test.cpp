@@ -11,6 +11,7 @@
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
+#include "study/journal/journal.hpp"
 #include "wait_until.hpp"
 
 namespace armwright {
@@ -195,7 +196,9 @@ label = "patient"
   const auto attempts = folder_ / "study/attempts/sphere/patient/r01";
   const auto wait_for = [&](const char* token) {
     const auto journal = attempts / token / "run/journal";
-    return wait_until([&] { return read_text(journal).size() > 500; });
+    // The optimizer waits after ten evaluations (patient.py).
+    return wait_until(
+        [&] { return !read_text(journal).empty() && read_journal(journal).training.size() == 10; });
   };
   Program first(folder_.path(), {"cell", "study", "0-1"}, environment);
   ASSERT_TRUE(wait_for("001"));
