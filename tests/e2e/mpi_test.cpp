@@ -48,7 +48,7 @@ class Mpi : public testing::Test {
   void SetUp() override {
     if (!has_mpirun()) {
       GTEST_SKIP() << "there is no mpirun.openmpi, or the program was built without MPI: install "
-                      "openmpi-bin and libopenmpi-dev (scripts/setup) and build again";
+                      "openmpi-bin and libopenmpi-dev (scripts/setup --tests) and build again";
     }
   }
 
@@ -172,7 +172,7 @@ TEST_P(MpiUserProblem, ComparesEightOptimizersWithTheSameBytesForAnyThreadsAndRa
   const UserProblem& user = GetParam();
   if (std::system((std::string(user.requirement) + " >/dev/null 2>&1").c_str()) != 0) {
     GTEST_SKIP() << "the problem cannot run here, because this fails: " << user.requirement
-                 << " (scripts/setup installs scipy, ngspice and MuJoCo)";
+                 << " (scripts/setup --tests installs scipy, ngspice and MuJoCo)";
   }
   const auto make_command = [&](const std::string& out, const char* jobs) {
     return std::vector<std::string>{

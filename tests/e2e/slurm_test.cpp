@@ -63,7 +63,7 @@ class Slurm : public testing::Test {
       GTEST_SKIP() << "a Slurm of one's own needs root";
     }
     if (::access("/usr/sbin/slurmctld", X_OK) != 0) {
-      GTEST_SKIP() << "slurmctld is not installed: scripts/setup installs slurm-wlm";
+      GTEST_SKIP() << "slurmctld is not installed: scripts/setup --tests installs slurm-wlm";
     }
     // Slurm's step daemons leave their parents; they are to be reaped all the same.
     ::prctl(PR_SET_CHILD_SUBREAPER, 1);

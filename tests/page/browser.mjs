@@ -21,7 +21,7 @@ const kFlags = [
 
 // `options` are Playwright's for the context: with reducedMotion no animation takes processor time.
 export async function open_browser(options = {}) {
-  assert.ok(existsSync(kProgram), `${kProgram} is missing: install the Debian package chromium (scripts/setup does)`);
+  assert.ok(existsSync(kProgram), `${kProgram} is missing: install the Debian package chromium (scripts/setup --tests does)`);
   const profile = mkdtempSync(join(tmpdir(), 'armwright-chromium-'));
   const context = await chromium.launchPersistentContext(profile, {
     executablePath: kProgram,
