@@ -33,6 +33,7 @@ endfunction()
 function(armwright_room name)
   cmake_parse_arguments(ROOM "" "" "ROOMS;LIBRARIES;PUBLIC_LIBRARIES" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "_module/") # a file of its own, which the program loads on demand
   add_library(armwright_${name} STATIC ${sources})
   add_library(armwright::${name} ALIAS armwright_${name})
   set_target_properties(armwright_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)

@@ -57,32 +57,43 @@ void check_engines(Checks& checks) {
 void check_optimizers(Checks& checks) {
   struct Library {
     const char* name;  // the beginning of a row's backend
+    const char* key;   // in list_libraries()
     const char* package;
     const char* option;
   };
   constexpr Library kLibraries[] = {
-      {"NLopt", "libnlopt-cxx-dev", "ARMWRIGHT_WITH_NLOPT"},
-      {"pagmo", "libpagmo-dev", "ARMWRIGHT_WITH_PAGMO"},
-      {"Ceres", "libceres-dev", "ARMWRIGHT_WITH_CERES"},
+      {"NLopt", "nlopt", "libnlopt-cxx-dev", "ARMWRIGHT_WITH_NLOPT"},
+      {"pagmo", "pagmo", "libpagmo-dev", "ARMWRIGHT_WITH_PAGMO"},
+      {"Ceres", "ceres", "libceres-dev", "ARMWRIGHT_WITH_CERES"},
   };
-  const auto count = [](std::string_view library, bool available) {
-    return std::ranges::count_if(optimizer_table(), [&](const OptimizerRow& row) {
-      return row.unfit.empty() && row.unavailable.empty() == available &&
-             (library.empty() ? row.backend.empty() : row.backend.starts_with(library));
-    });
+  const auto list_rows = [](std::string_view library) {
+    std::vector<const OptimizerRow*> rows;
+    for (const OptimizerRow& row : optimizer_table()) {
+      if (row.unfit.empty() &&
+          (library.empty() ? row.backend.empty() : row.backend.starts_with(library))) {
+        rows.push_back(&row);
+      }
+    }
+    return rows;
   };
   checks.push_back({"optimizers", "armwright's own", CheckState::good,
-                    fmt::format("{} optimizers", count("", true))});
+                    fmt::format("{} optimizers", list_rows("").size())});
   for (const Library& library : kLibraries) {
-    const auto there = count(library.name, true);
-    if (there > 0) {
+    const std::vector<const OptimizerRow*> rows = list_rows(library.name);
+    if (list_libraries().at(library.key).empty()) {
+      checks.push_back({"optimizers", library.name, CheckState::lacking,
+                        fmt::format("not in this build: {} optimizers are missing", rows.size()),
+                        advise_build(library.package, library.option)});
+      continue;
+    }
+    try {  // a library may be loaded only now
+      const OptimizerRow row = load_optimizer(rows.front()->name);
+      row.make(Options::parse(row.name, row.options, {}));
+      checks.push_back({"optimizers", library.name, CheckState::good,
+                        fmt::format("{} optimizers", rows.size())});
+    } catch (const Error& error) {
       checks.push_back(
-          {"optimizers", library.name, CheckState::good, fmt::format("{} optimizers", there)});
-    } else {
-      checks.push_back(
-          {"optimizers", library.name, CheckState::lacking,
-           fmt::format("not in this build: {} optimizers are missing", count(library.name, false)),
-           advise_build(library.package, library.option)});
+          {"optimizers", library.name, CheckState::bad, error.what(), "install armwright again"});
     }
   }
 }

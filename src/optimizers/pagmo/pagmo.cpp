@@ -4,6 +4,7 @@
 
 #include "optimizers/interface/scalar_function.hpp"
 #include "optimizers/pagmo/pagmo_backend.hpp"
+#include "optimizers/pagmo/pagmo_loader.hpp"
 #include "optimizers/pagmo/pagmo_options.hpp"
 
 namespace armwright {
@@ -33,8 +34,7 @@ OptimizerRow make_row(PagmoMethod method, std::string summary, std::string sourc
           .options = std::move(options),
           .make = [method](const Options& given) { return make_pagmo_optimizer(method, given); },
           .requirements = {.objectives = method.multi_objective ? 2 : 1},
-          .backend = "pagmo (CMake option ARMWRIGHT_WITH_PAGMO)",
-          .unavailable = explain_missing_pagmo()};
+          .backend = "pagmo (CMake option ARMWRIGHT_WITH_PAGMO)"};
 }
 
 OptionSpec adaptation_option() {
@@ -300,10 +300,12 @@ std::vector<OptimizerRow> make_multi_objective_rows() {
 }  // namespace
 
 std::vector<OptimizerRow> make_pagmo_rows() {
+  const std::string unavailable = explain_missing_pagmo();
   std::vector<OptimizerRow> rows;
   for (const auto make_rows : {make_differential_evolution_rows, make_swarm_rows,
                                make_evolution_rows, make_point_rows, make_multi_objective_rows}) {
     for (OptimizerRow& row : make_rows()) {
+      row.unavailable = unavailable;
       rows.push_back(std::move(row));
     }
   }

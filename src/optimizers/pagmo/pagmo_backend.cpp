@@ -1,24 +1,19 @@
 #include "optimizers/pagmo/pagmo_backend.hpp"
 
-#include "base/error.hpp"
-
-#ifdef ARMWRIGHT_WITH_PAGMO
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
-#include <pagmo/population.hpp>
-#include <pagmo/problem.hpp>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/random.hpp"
 #include "optimizers/interface/scalar_function.hpp"
-#include "optimizers/pagmo/pagmo_algorithms.hpp"
+#include "optimizers/pagmo/pagmo_loader.hpp"
 
 namespace armwright {
 namespace {
@@ -27,31 +22,33 @@ namespace {
 // square violations.
 constexpr double kViolatedBeyondMeasure = 1e12;
 
-// Evaluates points and returns pagmo's fitness vectors: the objectives, then the constraints.
-// pagmo's coordinates are those of the search space with the integers behind the others, as pagmo
+// Evaluates points for pagmo. pagmo's coordinates are those of the search space with the integers behind the others, as pagmo
 // wants them. A logarithmic integer is none of its integers: its steps are factors, and
 // ScalarFunction rounds it.
-class PagmoBridge {
+class PagmoBridge : public PagmoProblem {
  public:
   PagmoBridge(const PagmoMethod& method, const Options& options, Evaluator& evaluator);
 
-  const SearchSpace& space() const { return function_.space(); }
-  const ProblemDescription& problem() const { return function_.evaluator().problem(); }
-  std::size_t objective_count() const {
+  std::vector<std::vector<double>> evaluate(std::span<const std::vector<double>> arranged) override;
+  std::pair<std::vector<double>, std::vector<double>> bounds() const override {
+    return {arrange(space().lower()), arrange(space().upper())};
+  }
+  std::size_t objective_count() const override {
     return method_.multi_objective ? problem().objectives.size() : 1;
   }
-  std::size_t constraint_count() const {
+  std::size_t constraint_count() const override {
     return method_.constraints ? problem().constraints.size() : 0;
   }
-  std::size_t integer_count() const { return integer_count_; }
+  std::size_t integer_count() const override { return integer_count_; }
+
+  const SearchSpace& space() const { return function_.space(); }
+  const ProblemDescription& problem() const { return function_.evaluator().problem(); }
   std::int64_t evaluation_count() const { return evaluation_count_; }
   // True after an exception of the evaluator has passed through pagmo.
   bool has_thrown() const { return has_thrown_; }
 
   // Returns pagmo's coordinates of coordinates of the search space. Rounds the integers.
   std::vector<double> arrange(std::span<const double> coordinates) const;
-  // Takes pagmo's coordinates.
-  std::vector<std::vector<double>> evaluate(std::span<const std::vector<double>> arranged);
 
  private:
   void require_finite(std::span<const double> coordinates) const;
@@ -64,26 +61,6 @@ class PagmoBridge {
   std::size_t integer_count_ = 0;
   std::int64_t evaluation_count_ = 0;
   bool has_thrown_ = false;
-};
-
-// The problem as pagmo needs it: default-constructible and copyable. All copies share the bridge.
-struct BridgedPagmoProblem {
-  PagmoBridge* bridge = nullptr;
-
-  std::vector<double> fitness(const std::vector<double>& coordinates) const {
-    return bridge->evaluate({&coordinates, 1}).front();
-  }
-  // Evaluates many points. pagmo stores points and fitness vectors one after the other in one
-  // vector.
-  std::vector<double> batch_fitness(const std::vector<double>& all) const;
-
-  std::pair<std::vector<double>, std::vector<double>> get_bounds() const {
-    return {bridge->arrange(bridge->space().lower()), bridge->arrange(bridge->space().upper())};
-  }
-  // pagmo calls these on a default-constructed object as well.
-  std::size_t get_nobj() const { return bridge == nullptr ? 1 : bridge->objective_count(); }
-  std::size_t get_nic() const { return bridge == nullptr ? 0 : bridge->constraint_count(); }
-  std::size_t get_nix() const { return bridge == nullptr ? 0 : bridge->integer_count(); }
 };
 
 PagmoBridge::PagmoBridge(const PagmoMethod& method, const Options& options, Evaluator& evaluator)
@@ -162,19 +139,6 @@ std::vector<double> PagmoBridge::calc_fitness(const Score& score) const {
   return fitness;
 }
 
-std::vector<double> BridgedPagmoProblem::batch_fitness(const std::vector<double>& all) const {
-  const auto dimension = static_cast<std::ptrdiff_t>(bridge->space().dimension());
-  std::vector<std::vector<double>> points;
-  for (auto from = all.begin(); from != all.end(); from += dimension) {
-    points.emplace_back(from, from + dimension);
-  }
-  std::vector<double> joined;
-  for (const std::vector<double>& one : bridge->evaluate(points)) {
-    joined.insert(joined.end(), one.begin(), one.end());
-  }
-  return joined;
-}
-
 // pagmo's messages have several lines; the last one says what is wrong.
 std::string get_reason(const std::exception& error) {
   const std::string text = error.what();
@@ -192,8 +156,9 @@ class PagmoOptimizer : public Optimizer {
   PagmoOptimizer(PagmoMethod method, Options options)
       : method_(std::move(method)), options_(std::move(options)) {
     require_options_that_fit();
+    make_search_ = load_pagmo_module(method_.row);
     try {
-      make_pagmo_algorithm(method_.algorithm, options_, {});
+      make_search();
     } catch (const std::exception& error) {
       refuse(get_reason(error));
     }
@@ -223,6 +188,10 @@ class PagmoOptimizer : public Optimizer {
     throw Error(ErrorKind::usage, fmt::format("optimizer '{}': {}", method_.row, what));
   }
 
+  std::unique_ptr<PagmoSearch> make_search() const {
+    return std::unique_ptr<PagmoSearch>(make_search_(method_.algorithm, options_.values()));
+  }
+
   bool has_option(const std::string& name) const { return options_.values().contains(name); }
 
   // Checks what pagmo would find only after the evaluation of the first population.
@@ -247,16 +216,18 @@ class PagmoOptimizer : public Optimizer {
   }
 
   void evolve(PagmoBridge& bridge, Evaluator& evaluator, std::uint64_t seed) const {
-    const pagmo::problem problem{BridgedPagmoProblem{&bridge}};
-    pagmo::population population = make_population(bridge, problem, seed);
+    const std::unique_ptr<PagmoSearch> search = make_search();
+    search->begin(bridge, fold_seed(seed));
     PagmoPlan plan{.seed = fold_seed(seed)};
-    if (const double start_value = std::abs(population.get_f().front().front()); start_value > 0) {
+    const double start_value = std::abs(add_population(bridge, *search, seed));
+    if (start_value > 0) {
       plan.scale = start_value;
     }
-    pagmo::algorithm algorithm = plan_algorithm(plan, bridge, evaluator);
+    set_pace(plan, bridge, evaluator);
+    search->plan(plan);
     while (!evaluator.stopped()) {
       const std::int64_t before = bridge.evaluation_count();
-      population = algorithm.evolve(population);
+      search->evolve();
       if (method_.ends || bridge.evaluation_count() == before) {
         evaluator.explain_end(method_.ends ? "its search has converged"
                                            : "it asked for no further evaluation");
@@ -264,20 +235,19 @@ class PagmoOptimizer : public Optimizer {
       }
       if (method_.paced) {  // a remainder shorter than one step of the schedule
         ++plan.seed;
-        algorithm = plan_algorithm(plan, bridge, evaluator);
+        set_pace(plan, bridge, evaluator);
+        search->plan(plan);
       }
     }
   }
 
-  pagmo::algorithm plan_algorithm(PagmoPlan& plan, const PagmoBridge& bridge,
-                                  const Evaluator& evaluator) const {
+  void set_pace(PagmoPlan& plan, const PagmoBridge& bridge, const Evaluator& evaluator) const {
     if (method_.paced) {
       const std::int64_t generations =
           evaluator.remaining() / calc_generation_cost(bridge.space().dimension());
       plan.generations = static_cast<unsigned>(
           std::clamp<std::int64_t>(generations, 1, std::int64_t{kEndlessGenerations}));
     }
-    return make_pagmo_algorithm(method_.algorithm, options_, plan);
   }
 
   // The number of evaluations between two steps of a schedule.
@@ -292,8 +262,8 @@ class PagmoOptimizer : public Optimizer {
     return population_size();
   }
 
-  pagmo::population make_population(PagmoBridge& bridge, const pagmo::problem& problem,
-                                    std::uint64_t seed) const {
+  // Returns the first value of the first individual.
+  double add_population(PagmoBridge& bridge, PagmoSearch& search, std::uint64_t seed) const {
     RandomStream random("optimizer/pagmo:" + method_.algorithm, seed);
     const double spread = has_option("spread") ? options_.get_number("spread") : 1;
     std::vector<std::vector<double>> individuals =
@@ -301,54 +271,31 @@ class PagmoOptimizer : public Optimizer {
     for (std::vector<double>& individual : individuals) {
       individual = bridge.arrange(individual);
     }
-    return evaluate_population(bridge, problem, individuals, fold_seed(seed));
-  }
-
-  pagmo::population evaluate_population(PagmoBridge& bridge, const pagmo::problem& problem,
-                                        std::span<const std::vector<double>> individuals,
-                                        unsigned seed) const {
     // Only a method that evaluates batches later begins with a batch.
     const std::size_t batch = method_.batch ? individuals.size() : 1;
-    pagmo::population population(problem, 0, seed);
+    double first_value = 0;
     for (std::size_t from = 0; from < individuals.size(); from += batch) {
-      const auto asked = individuals.subspan(from, batch);
+      const auto asked = std::span(individuals).subspan(from, batch);
       const std::vector<std::vector<double>> fitness = bridge.evaluate(asked);
       for (std::size_t i = 0; i < asked.size(); ++i) {
-        population.push_back(asked[i], fitness[i]);
+        search.add(asked[i], fitness[i]);
+      }
+      if (from == 0) {
+        first_value = fitness.front().front();
       }
     }
-    return population;
+    return first_value;
   }
 
   PagmoMethod method_;
   Options options_;
+  MakePagmoSearch* make_search_ = nullptr;
 };
 
 }  // namespace
-
-std::string explain_missing_pagmo() {
-  return {};
-}
 
 std::unique_ptr<Optimizer> make_pagmo_optimizer(const PagmoMethod& method, const Options& options) {
   return std::make_unique<PagmoOptimizer>(method, options);
 }
 
 }  // namespace armwright
-
-#else
-
-namespace armwright {
-
-std::string explain_missing_pagmo() {
-  return "built without pagmo (CMake option ARMWRIGHT_WITH_PAGMO is OFF)";
-}
-
-std::unique_ptr<Optimizer> make_pagmo_optimizer(const PagmoMethod& method,
-                                                const Options& /*options*/) {
-  throw Error(ErrorKind::usage, "optimizer '" + method.row + "': " + explain_missing_pagmo());
-}
-
-}  // namespace armwright
-
-#endif

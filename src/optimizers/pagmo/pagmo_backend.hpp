@@ -1,5 +1,6 @@
-// Connects the rows of pagmo.cpp with the library pagmo 2.18. All code that needs types of pagmo
-// lies behind these functions.
+// Connects the rows of pagmo.cpp with the library pagmo 2.18, which only the module
+// libarmwright_pagmo.so contains (optimizers/pagmo_module). The module is loaded when an optimizer
+// is made.
 #pragma once
 
 #include <memory>
@@ -10,7 +11,8 @@
 
 namespace armwright {
 
-// Returns one row per algorithm of pagmo. In a build without pagmo they say so and cannot be used.
+// Returns one row per algorithm of pagmo. Without pagmo or its module they say so and cannot be
+// used.
 std::vector<OptimizerRow> make_pagmo_rows();
 
 // The properties of a method besides its options. A method with an option `population` draws its
@@ -26,10 +28,8 @@ struct PagmoMethod {
   bool integer = false;          // it keeps integers whole; the others would propose fractions
 };
 
-// Returns why this build cannot use the methods; empty if it can.
-std::string explain_missing_pagmo();
-
-// Makes the optimizer. Throws Error{usage} if pagmo refuses the options.
+// Loads the module and makes the optimizer. Throws Error{usage} if pagmo refuses the options, and
+// Error{bad_data} if the module cannot be loaded or belongs to another build.
 std::unique_ptr<Optimizer> make_pagmo_optimizer(const PagmoMethod& method, const Options& options);
 
 }  // namespace armwright

@@ -1,8 +1,6 @@
 #include "problems/config/config_files.hpp"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
-#include <link.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -10,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/folder.hpp"
 #include "base/text.hpp"
+#include "process/own_file.hpp"
 
 namespace armwright {
 namespace {
@@ -61,22 +60,12 @@ std::string describe_missing(std::string_view kind, const std::filesystem::path&
                             : text;
 }
 
-// Returns the shared object that this code is part of. Empty if it is part of the program itself.
-std::filesystem::path find_own_library() {
-  static const char place = 0;
-  Dl_info info;
-  link_map* object = nullptr;
-  const bool known =
-      dladdr1(&place, &info, reinterpret_cast<void**>(&object), RTLD_DL_LINKMAP) != 0;
-  return known && object != nullptr ? object->l_name : "";  // the program itself has no name here
-}
-
 // Returns the configuration's folder for a shared object. PREFIX of
 // PREFIX/lib/python3/dist-packages/armwright/*.so is four folders above the object's own. If no
 // folder has the configuration, it returns the expected place in the highest of them.
 std::filesystem::path find_beside(const std::filesystem::path& library) {
   constexpr int kMostLevels = 4;
-  std::filesystem::path folder = std::filesystem::absolute(library).parent_path();
+  std::filesystem::path folder = library.parent_path();
   for (int level = 1;; ++level) {
     folder = folder.parent_path();
     const auto configs = folder / "share" / "armwright" / "configs";
@@ -98,12 +87,10 @@ std::filesystem::path find_config_folder() {
                             "designs/ and robots/",
                             sanitize(folder)));
   }
-  std::error_code ignored;
-  const auto library = find_own_library();
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  const auto folder = library.empty()
-                          ? program.parent_path().parent_path() / "share" / "armwright" / "configs"
-                          : find_beside(library);
+  const OwnFile own = find_own_file();
+  const auto folder = own.is_program
+                          ? own.path.parent_path().parent_path() / "share" / "armwright" / "configs"
+                          : find_beside(own.path);
   if (!folder_exists(folder / "problems")) {
     throw Error(ErrorKind::usage,
                 fmt::format("the shipped configuration was not found in {}; reinstall armwright or "

@@ -1,9 +1,9 @@
-#ifdef ARMWRIGHT_WITH_PAGMO
-
-#include "optimizers/pagmo/pagmo_algorithms.hpp"
+#include "optimizers/pagmo_module/pagmo_module.hpp"
 
 #include <functional>
-#include <map>
+#include <memory>
+#include <optional>
+#include <pagmo/algorithm.hpp>
 #include <pagmo/algorithms/bee_colony.hpp>
 #include <pagmo/algorithms/cmaes.hpp>
 #include <pagmo/algorithms/compass_search.hpp>
@@ -26,11 +26,13 @@
 #include <pagmo/algorithms/xnes.hpp>
 #include <pagmo/batch_evaluators/member_bfe.hpp>
 #include <pagmo/bfe.hpp>
+#include <pagmo/population.hpp>
+#include <pagmo/problem.hpp>
 
 namespace armwright {
 namespace {
 
-// Value of pagmo's option `memory`: off. An Optimizer keeps no state between runs.
+// Value of pagmo's option `memory`: off. A search keeps no state between runs.
 constexpr bool kMemory = false;
 // Tolerances of the differential evolutions: off. They would end when the population has become
 // flat; evolve() is called again anyway, and ending would only lose their adapted parameters.
@@ -43,16 +45,18 @@ constexpr double kAutomatic = -1;
 // The options of one row in the types of pagmo.
 class Reader {
  public:
-  explicit Reader(const Options& options) : options_(options) {}
-  double number(const std::string& name) const { return options_.get_number(name); }
+  explicit Reader(const PagmoOptions& options) : options_(options) {}
+  double number(const std::string& name) const { return std::get<double>(options_.at(name)); }
   unsigned count(const std::string& name) const {
-    return static_cast<unsigned>(options_.get_integer(name));
+    return static_cast<unsigned>(std::get<std::int64_t>(options_.at(name)));
   }
-  bool flag(const std::string& name) const { return options_.get_bool(name); }
-  const std::string& text(const std::string& name) const { return options_.get_text(name); }
+  bool flag(const std::string& name) const { return std::get<bool>(options_.at(name)); }
+  const std::string& text(const std::string& name) const {
+    return std::get<std::string>(options_.at(name));
+  }
 
  private:
-  const Options& options_;
+  const PagmoOptions& options_;
 };
 
 using Maker = std::function<pagmo::algorithm(const Reader&, const PagmoPlan&)>;
@@ -210,17 +214,77 @@ const std::map<std::string, Maker>& multi_objective_makers() {
   return makers;
 }
 
-}  // namespace
-
-pagmo::algorithm make_pagmo_algorithm(const std::string& name, const Options& options,
-                                      const PagmoPlan& plan) {
-  const auto single = single_objective_makers().find(name);
-  const Maker& maker = single != single_objective_makers().end()
-                           ? single->second
-                           : multi_objective_makers().at(name);
-  return maker(Reader(options), plan);
+const Maker& find_maker(const std::string& algorithm) {
+  const auto single = single_objective_makers().find(algorithm);
+  return single != single_objective_makers().end() ? single->second
+                                                   : multi_objective_makers().at(algorithm);
 }
 
+// The problem as pagmo needs it: default-constructible and copyable. All copies share the problem of
+// the program. pagmo calls the counts on a default-constructed object as well.
+struct BridgedProblem {
+  PagmoProblem* problem = nullptr;
+
+  std::vector<double> fitness(const std::vector<double>& point) const {
+    return problem->evaluate({&point, 1}).front();
+  }
+  // Evaluates many points. pagmo stores points and fitness vectors one after the other in one
+  // vector.
+  std::vector<double> batch_fitness(const std::vector<double>& all) const {
+    const auto dimension = static_cast<std::ptrdiff_t>(problem->bounds().first.size());
+    std::vector<std::vector<double>> points;
+    for (auto from = all.begin(); from != all.end(); from += dimension) {
+      points.emplace_back(from, from + dimension);
+    }
+    std::vector<double> joined;
+    for (const std::vector<double>& one : problem->evaluate(points)) {
+      joined.insert(joined.end(), one.begin(), one.end());
+    }
+    return joined;
+  }
+
+  std::pair<std::vector<double>, std::vector<double>> get_bounds() const {
+    return problem->bounds();
+  }
+  std::size_t get_nobj() const { return problem == nullptr ? 1 : problem->objective_count(); }
+  std::size_t get_nic() const { return problem == nullptr ? 0 : problem->constraint_count(); }
+  std::size_t get_nix() const { return problem == nullptr ? 0 : problem->integer_count(); }
+};
+
+class Search : public PagmoSearch {
+ public:
+  Search(const std::string& algorithm, const PagmoOptions& options)
+      : maker_(find_maker(algorithm)), options_(options) {
+    plan({});
+  }
+
+  void begin(PagmoProblem& problem, unsigned seed) override {
+    population_.emplace(pagmo::problem{BridgedProblem{&problem}}, 0, seed);
+  }
+  void add(const std::vector<double>& point, const std::vector<double>& fitness) override {
+    population_->push_back(point, fitness);
+  }
+  void plan(const PagmoPlan& plan) override { algorithm_ = maker_(Reader(options_), plan); }
+  void evolve() override { population_ = algorithm_->evolve(*population_); }
+
+ private:
+  const Maker& maker_;
+  PagmoOptions options_;
+  std::optional<pagmo::algorithm> algorithm_;
+  std::optional<pagmo::population> population_;
+};
+
+}  // namespace
 }  // namespace armwright
 
-#endif
+extern "C" {
+
+[[gnu::visibility("default")]] extern const char armwright_pagmo_id[];
+const char armwright_pagmo_id[] = ARMWRIGHT_PAGMO_ID;
+
+[[gnu::visibility("default")]] armwright::MakePagmoSearch armwright_make_pagmo_search;
+armwright::PagmoSearch* armwright_make_pagmo_search(const std::string& algorithm,
+                                                    const armwright::PagmoOptions& options) {
+  return std::make_unique<armwright::Search>(algorithm, options).release();
+}
+}
