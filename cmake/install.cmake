@@ -17,6 +17,9 @@ if(ARMWRIGHT_WITH_MPI)
 endif()
 
 install(TARGETS armwright RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+if(ARMWRIGHT_WITH_PAGMO)
+  install(TARGETS armwright_pagmo LIBRARY DESTINATION ${ARMWRIGHT_MODULE_DIR} COMPONENT runtime)
+endif()
 install(DIRECTORY configs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/configs COMPONENT runtime)
 # Example plugins to read and to build. The program looks for built plugins in lib/armwright/plugins.
 install(DIRECTORY plugins/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/plugins COMPONENT runtime USE_SOURCE_PERMISSIONS
@@ -50,7 +53,7 @@ install(TARGETS armwright_shared EXPORT armwrightRunTargets LIBRARY DESTINATION 
 install(EXPORT armwrightRunTargets NAMESPACE armwright:: DESTINATION ${ARMWRIGHT_CMAKE_DIR} COMPONENT dev)
 
 configure_package_config_file(cmake/armwrightConfig.cmake.in ${PROJECT_BINARY_DIR}/armwrightConfig.cmake
-                              INSTALL_DESTINATION ${ARMWRIGHT_CMAKE_DIR})
+                              INSTALL_DESTINATION ${ARMWRIGHT_CMAKE_DIR} PATH_VARS ARMWRIGHT_MODULE_DIR)
 # docs/versioning.md says what does not change within a major version.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/armwrightConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/armwrightConfig.cmake ${PROJECT_BINARY_DIR}/armwrightConfigVersion.cmake

@@ -1,8 +1,6 @@
 # The module libarmwright_pagmo.so: the only file that contains pagmo. The program loads it when an optimizer of pagmo is made, because
-# loading pagmo takes more time and memory than everything else at a start (docs/architecture.md). It lies in lib/armwright, in the build
-# tree as in an installation (src/optimizers/pagmo/pagmo_loader.hpp).
+# loading pagmo takes more time and memory than everything else at a start (docs/architecture.md).
 set(folder ${PROJECT_SOURCE_DIR}/src/optimizers/pagmo_module)
-set(ARMWRIGHT_MODULE_DIR lib/armwright)
 add_library(armwright_pagmo MODULE ${folder}/pagmo_module.cpp)
 set_target_properties(armwright_pagmo PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
                                                  LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${ARMWRIGHT_MODULE_DIR})

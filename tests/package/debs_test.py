@@ -90,6 +90,7 @@ def check_program(package, sources):
     names = set(run(program, "list", "problems", "--names", env=environment).split())
     expect(shipped <= names, f"the program does not find {sorted(shipped - names)} beside it")
     run(program, *SMOKE_JOB, WORK_DIR + "/run", env=environment)
+    run(program, "optimize", "sphere", "--optimizer", "pagmo:de", "--budget", "60", "--out", WORK_DIR + "/pagmo", env=environment)
     expect(os.path.exists(WORK_DIR + "/run/result.json"), "the smoke job left no result")
     pages = glob.glob(root + "/usr/share/man/man1/*.gz")
     for page in pages:
@@ -110,10 +111,10 @@ def main():
         "/usr/bin/armwright", "/usr/share/armwright/configs/problems/q1-complex.toml", "/usr/share/doc/armwright/README.md",
         "/usr/share/man/man1/armwright.1.gz", "/usr/share/man/man1/armwright-testset-export.1.gz",
         "/usr/share/bash-completion/completions/armwright", "/usr/share/armwright/plugins/scipy_de/scipy_de.py",
-        f"/usr/lib/libarmwright.so.{VERSION}", f"/usr/lib/libarmwright.so.{VERSION.split('.')[0]}",
+        "/usr/lib/armwright/libarmwright_pagmo.so", f"/usr/lib/libarmwright.so.{VERSION}", f"/usr/lib/libarmwright.so.{VERSION.split('.')[0]}",
         "/usr/share/armwright/examples/own_program/own_program.cpp"])
     check_fields("armwright", packages["armwright"], {
-        "Depends": r"libc6 \(>= .*libode8.*libsqlite3-0", "Section": "science", "Priority": "optional",
+        "Depends": r"libc6 \(>= .*libode8.*libpagmo8.*libsqlite3-0", "Section": "science", "Priority": "optional",
         "Description": r"(?s)^tunes .*\n .*physics engine", "Maintainer": "armwright developers <.*@.*>", "Suggests": "python3-scipy"})
     check_contents("armwright-dev", files["armwright-dev"], [
         "/usr/include/armwright/plugin.h", "/usr/include/armwright/problem.hpp", "/usr/include/armwright/run.h",
@@ -122,7 +123,8 @@ def main():
     check_fields("armwright-dev", packages["armwright-dev"], {
         "Depends": rf"armwright \(= {FULL_VERSION}\).*libeigen3-dev", "Section": "libdevel"})
     if "python3-armwright" in packages:
-        check_contents("python3-armwright", files["python3-armwright"], [])
+        check_contents("python3-armwright", files["python3-armwright"], [
+            "/usr/lib/python3/dist-packages/armwright/libarmwright_pagmo.so"])
         check_fields("python3-armwright", packages["python3-armwright"], {
             "Depends": rf"armwright \(= {FULL_VERSION}\).*python3 \(<< 3.12\).*python3-numpy", "Section": "python"})
     # No file is in two packages: dpkg would refuse the second.
