@@ -21,18 +21,15 @@ find_path(BOOST_INCLUDE_DIR boost/math/distributions/fisher_f.hpp REQUIRED) # Bo
 option(ARMWRIGHT_WITH_NLOPT "Optimizers of NLopt (nlopt:*)" ON)
 option(ARMWRIGHT_WITH_PAGMO "Optimizers of pagmo (pagmo:*)" ON)
 option(ARMWRIGHT_WITH_CERES "Optimizers of Ceres Solver (ceres:*)" ON)
-set(ARMWRIGHT_OPTIMIZER_LIBRARIES "")
 if(ARMWRIGHT_WITH_NLOPT)
   find_library(NLOPT_CXX_LIBRARY nlopt_cxx REQUIRED) # this variant of the library also has AGS
   find_path(NLOPT_INCLUDE_DIR nlopt.h REQUIRED)
-  list(APPEND ARMWRIGHT_OPTIMIZER_LIBRARIES ${NLOPT_CXX_LIBRARY})
 endif()
 if(ARMWRIGHT_WITH_PAGMO)
   find_package(Pagmo 2.18 REQUIRED)
 endif()
 if(ARMWRIGHT_WITH_CERES)
   find_package(Ceres 2.1 REQUIRED)
-  list(APPEND ARMWRIGHT_OPTIMIZER_LIBRARIES Ceres::ceres)
 endif()
 
 # A third engine that checks the others, and robots in MJCF. Both are built if the library is there; the build never requires it. (The CMake package of the library

@@ -17,9 +17,7 @@ if(ARMWRIGHT_WITH_MPI)
 endif()
 
 install(TARGETS armwright RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
-if(ARMWRIGHT_WITH_PAGMO)
-  install(TARGETS armwright_pagmo LIBRARY DESTINATION ${ARMWRIGHT_MODULE_DIR} COMPONENT runtime)
-endif()
+install(TARGETS ${ARMWRIGHT_MODULES} LIBRARY DESTINATION ${ARMWRIGHT_MODULE_DIR} COMPONENT runtime)
 install(DIRECTORY configs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/configs COMPONENT runtime)
 # Example plugins to read and to build. The program looks for built plugins in lib/armwright/plugins.
 install(DIRECTORY plugins/ DESTINATION ${CMAKE_INSTALL_DATADIR}/armwright/plugins COMPONENT runtime USE_SOURCE_PERMISSIONS

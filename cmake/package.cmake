@@ -41,7 +41,7 @@ the gains of the winner for ROS 2.")
 # The packages that find_package(armwright) needs, because the libraries are static.
 set(dev_packages libeigen3-dev libfmt-dev nlohmann-json3-dev libssl-dev zlib1g-dev libsqlite3-dev pkg-config libode-dev
                  libtomlplusplus-dev libtinyxml2-dev libyaml-dev liblz4-dev libzstd-dev)
-foreach(option_and_packages IN ITEMS "CERES:libceres-dev" "NLOPT:libnlopt-cxx-dev" "PAGE:duktape-dev"
+foreach(option_and_packages IN ITEMS "NLOPT:libnlopt-cxx-dev" "PAGE:duktape-dev"
                                      "MPI:libopenmpi-dev" "MUJOCO:libmujoco-dev" "ASSIMP:libassimp-dev")
   string(REGEX MATCH "(.*):(.*)" unused ${option_and_packages})
   if(ARMWRIGHT_WITH_${CMAKE_MATCH_1})

@@ -90,7 +90,8 @@ def check_program(package, sources):
     names = set(run(program, "list", "problems", "--names", env=environment).split())
     expect(shipped <= names, f"the program does not find {sorted(shipped - names)} beside it")
     run(program, *SMOKE_JOB, WORK_DIR + "/run", env=environment)
-    run(program, "optimize", "sphere", "--optimizer", "pagmo:de", "--budget", "60", "--out", WORK_DIR + "/pagmo", env=environment)
+    for optimizer in ["pagmo:de", "ceres:bfgs"]:  # from the modules
+        run(program, "optimize", "sphere", "--optimizer", optimizer, "--budget", "60", "--out", WORK_DIR + "/" + optimizer, env=environment)
     expect(os.path.exists(WORK_DIR + "/run/result.json"), "the smoke job left no result")
     pages = glob.glob(root + "/usr/share/man/man1/*.gz")
     for page in pages:
@@ -111,7 +112,7 @@ def main():
         "/usr/bin/armwright", "/usr/share/armwright/configs/problems/q1-complex.toml", "/usr/share/doc/armwright/README.md",
         "/usr/share/man/man1/armwright.1.gz", "/usr/share/man/man1/armwright-testset-export.1.gz",
         "/usr/share/bash-completion/completions/armwright", "/usr/share/armwright/plugins/scipy_de/scipy_de.py",
-        "/usr/lib/armwright/libarmwright_pagmo.so", f"/usr/lib/libarmwright.so.{VERSION}", f"/usr/lib/libarmwright.so.{VERSION.split('.')[0]}",
+        "/usr/lib/armwright/libarmwright_ceres.so", "/usr/lib/armwright/libarmwright_pagmo.so", f"/usr/lib/libarmwright.so.{VERSION}", f"/usr/lib/libarmwright.so.{VERSION.split('.')[0]}",
         "/usr/share/armwright/examples/own_program/own_program.cpp"])
     check_fields("armwright", packages["armwright"], {
         "Depends": r"libc6 \(>= .*libode8.*libpagmo8.*libsqlite3-0", "Section": "science", "Priority": "optional",

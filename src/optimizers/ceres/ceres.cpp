@@ -1,19 +1,13 @@
 // The rows of the Ceres solvers: their options and what they need.
 
-#include "base/error.hpp"
 #include "optimizers/ceres/ceres_backend.hpp"
 #include "optimizers/interface/differences.hpp"
+#include "process/module_loader.hpp"
 
 namespace armwright {
 namespace {
 
 constexpr const char* kBackend = "Ceres Solver (CMake option ARMWRIGHT_WITH_CERES)";
-#ifdef ARMWRIGHT_WITH_CERES
-constexpr const char* kUnavailable = "";
-#else
-constexpr const char* kUnavailable =
-    "built without Ceres Solver (CMake option ARMWRIGHT_WITH_CERES is OFF)";
-#endif
 
 std::vector<OptionSpec> make_tolerance_options() {
   return {{.name = "function_tolerance",
@@ -28,8 +22,7 @@ std::vector<OptionSpec> make_tolerance_options() {
            .upper = 1}};
 }
 
-std::unique_ptr<Optimizer> make_lm([[maybe_unused]] const Options& options) {
-#ifdef ARMWRIGHT_WITH_CERES
+std::unique_ptr<Optimizer> make_lm(const Options& options) {
   const std::string& transform = options.get_text("transform");
   return make_levenberg_marquardt(
       {.exact = options.get_text("derivatives") == "exact",
@@ -44,21 +37,14 @@ std::unique_ptr<Optimizer> make_lm([[maybe_unused]] const Options& options) {
        .initial_radius = options.get_number("initial_trust_region_radius"),
        .function_tolerance = options.get_number("function_tolerance"),
        .parameter_tolerance = options.get_number("parameter_tolerance")});
-#else
-  throw Error(ErrorKind::usage, kUnavailable);
-#endif
 }
 
-std::unique_ptr<Optimizer> make_bfgs_optimizer([[maybe_unused]] const Options& options) {
-#ifdef ARMWRIGHT_WITH_CERES
+std::unique_ptr<Optimizer> make_bfgs_optimizer(const Options& options) {
   return make_bfgs({.differences = read_differences(options),
                     .initial_step = options.get_number("initial_step"),
                     .function_tolerance = options.get_number("function_tolerance"),
                     .parameter_tolerance = options.get_number("parameter_tolerance"),
                     .constraint_weight = options.get_number("constraint_weight")});
-#else
-  throw Error(ErrorKind::usage, kUnavailable);
-#endif
 }
 
 template <typename... Lists>
@@ -134,7 +120,7 @@ OptimizerRow make_lm_row() {
       .tuning =
           "transform, floor, step, min_lm_diagonal and function_tolerance were first chosen "
           "on q1-complex; on the other arms no value was significantly better",
-      .unavailable = kUnavailable,
+      .unavailable = explain_missing(kCeresModule),
   };
 }
 
@@ -163,7 +149,7 @@ OptimizerRow make_bfgs_row() {
       .options = join_options(own, make_tolerance_options()),
       .make = make_bfgs_optimizer,
       .backend = kBackend,
-      .unavailable = kUnavailable,
+      .unavailable = explain_missing(kCeresModule),
   };
 }
 

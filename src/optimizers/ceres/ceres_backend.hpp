@@ -1,5 +1,5 @@
-// The two optimizers that use Ceres Solver. Only their .cpp files and ceres_support.hpp include its
-// headers.
+// The two optimizers that use Ceres Solver, which only the module libarmwright_ceres.so contains
+// (optimizers/ceres_module). The module is loaded when an optimizer is made.
 //
 // Both work in coordinates p: p = 0 at the start, and the box is 10 wide in every variable, on the
 // variable's own scale. So a factor of ten is about 1, trust regions and damping mean the same for
@@ -14,7 +14,7 @@
 
 namespace armwright {
 
-// Returns the rows ceres:lm and ceres:bfgs. In a build without Ceres they say so and cannot be
+// Returns the rows ceres:lm and ceres:bfgs. Without Ceres or its module they say so and cannot be
 // used.
 std::vector<OptimizerRow> make_ceres_rows();
 
@@ -61,7 +61,7 @@ struct BfgsSettings {
   double constraint_weight = 1000;
 };
 
-// Make the optimizers. They exist only in a build with Ceres (ARMWRIGHT_WITH_CERES).
+// Load the module and make the optimizers. Throw Error{bad_data} as load_module().
 std::unique_ptr<Optimizer> make_levenberg_marquardt(const LevenbergSettings& settings);
 std::unique_ptr<Optimizer> make_bfgs(const BfgsSettings& settings);
 

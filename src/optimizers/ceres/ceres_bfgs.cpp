@@ -1,13 +1,9 @@
 // The optimizer ceres:bfgs: line searches along quasi-Newton directions.
 
-#include "optimizers/ceres/ceres_backend.hpp"
-
-#ifdef ARMWRIGHT_WITH_CERES
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "optimizers/ceres/ceres_backend.hpp"
 #include "optimizers/ceres/ceres_support.hpp"
 
 namespace armwright {
@@ -53,17 +49,17 @@ class FoldedBox {
   std::vector<double> angle_;
 };
 
-class MeritFunction : public ceres::FirstOrderFunction {
+class MeritFunction : public CeresFunction {
  public:
   MeritFunction(DifferencedFunction& function, const FoldedBox& box, double unit,
-                HeldException& held)
-      : function_(function), box_(box), unit_(unit), held_(held) {}
+                HeldException& held, const Evaluator& evaluator)
+      : function_(function), box_(box), unit_(unit), held_(held), evaluator_(evaluator) {}
 
-  int NumParameters() const override { return static_cast<int>(function_.space().dimension()); }
+  bool stopped() const override { return held_.any() || evaluator_.stopped(); }
 
-  bool Evaluate(const double* parameters, double* cost, double* gradient) const override {
+  bool evaluate(const double* parameters, double* cost, double* gradient) override {
     return held_.run([&] {
-      std::vector<double> p(parameters, parameters + NumParameters());
+      std::vector<double> p(parameters, parameters + function_.space().dimension());
       std::ranges::transform(p, p.begin(), [this](double value) { return value * unit_; });
       const DifferencedFunction::Place& place =
           function_.evaluate_place(box_.to_coordinates(p.data()), gradient != nullptr);
@@ -83,11 +79,13 @@ class MeritFunction : public ceres::FirstOrderFunction {
   const FoldedBox& box_;
   double unit_;
   HeldException& held_;
+  const Evaluator& evaluator_;
 };
 
 class Bfgs : public Optimizer {
  public:
-  explicit Bfgs(const BfgsSettings& settings) : settings_(settings) {}
+  explicit Bfgs(const BfgsSettings& settings)
+      : settings_(settings), solver_(load_ceres("optimizer 'ceres:bfgs'")) {}
 
   void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
     const auto merit_of = [&](const Score& score) {
@@ -98,29 +96,20 @@ class Bfgs : public Optimizer {
     DifferencedFunction function(evaluator, merit_of, settings_.differences);
     const FoldedBox box(function.space(), settings_.differences.step);
     HeldException held;
-    StopCallback callback(held, evaluator);
-    ceres::GradientProblemSolver::Options options;
-    options.line_search_direction_type = ceres::BFGS;
-    options.line_search_type = ceres::WOLFE;
-    options.logging_type = ceres::SILENT;
-    options.minimizer_progress_to_stdout = false;
-    options.max_num_iterations = std::numeric_limits<int>::max();
-    options.max_solver_time_in_seconds = std::numeric_limits<double>::max();
-    options.function_tolerance = settings_.function_tolerance;
-    options.parameter_tolerance = settings_.parameter_tolerance;
-    options.callbacks.push_back(&callback);
     // The first step of Ceres is 1 in the largest component of its coordinates.
-    const ceres::GradientProblem problem(
-        new MeritFunction(function, box, settings_.initial_step * kCeresBoxWidth, held));
+    MeritFunction merit(function, box, settings_.initial_step * kCeresBoxWidth, held, evaluator);
     std::vector<double> p(function.space().dimension(), 0.0);
-    ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(options, problem, p.data(), &summary);
+    const std::string message =
+        solver_.search_lines(merit, p,
+                             {.function_tolerance = settings_.function_tolerance,
+                              .parameter_tolerance = settings_.parameter_tolerance});
     held.rethrow_unless_stopped();
-    evaluator.explain_end("Ceres: " + summary.message);
+    evaluator.explain_end("Ceres: " + message);
   }
 
  private:
   BfgsSettings settings_;
+  const CeresSolver& solver_;
 };
 
 }  // namespace
@@ -130,5 +119,3 @@ std::unique_ptr<Optimizer> make_bfgs(const BfgsSettings& settings) {
 }
 
 }  // namespace armwright
-
-#endif

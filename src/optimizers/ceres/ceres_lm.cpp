@@ -1,9 +1,5 @@
 // The optimizer ceres:lm: Levenberg-Marquardt on the residuals of a problem.
 
-#include "optimizers/ceres/ceres_backend.hpp"
-
-#ifdef ARMWRIGHT_WITH_CERES
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "optimizers/ceres/ceres_backend.hpp"
 #include "optimizers/ceres/ceres_support.hpp"
 
 namespace armwright {
@@ -111,22 +108,23 @@ class CentredBox {
 // The steepest slope of a residual, in units of the scale of its values per tenth of the box.
 constexpr double kSteepest = 10;
 
-class ResidualCost : public ceres::CostFunction {
+class ResidualCost : public CeresFunction {
  public:
   ResidualCost(DifferencedFunction& function, const CentredBox& box, HeldException& held,
-               std::size_t residual_count)
-      : function_(function), box_(box), held_(held), residual_count_(residual_count) {
-    set_num_residuals(static_cast<int>(residual_count));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(function.space().dimension()));
-  }
+               const Evaluator& evaluator, std::size_t residual_count)
+      : function_(function),
+        box_(box),
+        held_(held),
+        evaluator_(evaluator),
+        residual_count_(residual_count) {}
 
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    double* const jacobian = jacobians == nullptr ? nullptr : jacobians[0];
+  bool stopped() const override { return held_.any() || evaluator_.stopped(); }
+
+  bool evaluate(const double* p, double* residuals, double* jacobian) override {
     const std::size_t dimension = function_.space().dimension();
     const bool is_known = held_.run([&] {
       const DifferencedFunction::Place& place =
-          function_.evaluate_place(box_.to_coordinates(parameters[0]), jacobian != nullptr);
+          function_.evaluate_place(box_.to_coordinates(p), jacobian != nullptr);
       if (place.values.size() != residual_count_) {
         return false;
       }
@@ -172,6 +170,7 @@ class ResidualCost : public ceres::CostFunction {
   DifferencedFunction& function_;
   const CentredBox& box_;
   HeldException& held_;
+  const Evaluator& evaluator_;
   std::size_t residual_count_;
 };
 
@@ -181,7 +180,8 @@ constexpr double kSmoothStep = 0.005;
 
 class LevenbergMarquardt : public Optimizer {
  public:
-  explicit LevenbergMarquardt(const LevenbergSettings& settings) : settings_(settings) {}
+  explicit LevenbergMarquardt(const LevenbergSettings& settings)
+      : settings_(settings), solver_(load_ceres("optimizer 'ceres:lm'")) {}
 
   void check_problem(const ProblemDescription& problem) const override {
     if (settings_.exact) {
@@ -261,38 +261,22 @@ class LevenbergMarquardt : public Optimizer {
              const std::vector<double>& centre, std::size_t residual_count) const {
     const CentredBox box(function.space(), centre);
     std::vector<double> p(centre.size(), 0.0);
-    ResidualCost cost(function, box, held, residual_count);
-    ceres::Problem::Options ownership;
-    ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::Problem problem(ownership);
-    problem.AddResidualBlock(&cost, nullptr, p.data());
+    ResidualCost cost(function, box, held, evaluator, residual_count);
+    CeresLeastSquares problem{.residual_count = residual_count,
+                              .jacobi_scaling = settings_.jacobi_scaling,
+                              .min_damping = settings_.min_damping,
+                              .initial_radius = settings_.initial_radius,
+                              .function_tolerance = settings_.function_tolerance,
+                              .parameter_tolerance = settings_.parameter_tolerance};
     for (std::size_t i = 0; i < p.size(); ++i) {
-      problem.SetParameterLowerBound(p.data(), static_cast<int>(i), box.lower(i));
-      problem.SetParameterUpperBound(p.data(), static_cast<int>(i), box.upper(i));
+      problem.lower.push_back(box.lower(i));
+      problem.upper.push_back(box.upper(i));
     }
-    StopCallback callback(held, evaluator);
-    ceres::Solver::Options options;
-    options.minimizer_type = ceres::TRUST_REGION;
-    options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.num_threads = 1;
-    options.logging_type = ceres::SILENT;
-    options.minimizer_progress_to_stdout = false;
-    options.max_num_iterations = std::numeric_limits<int>::max();
-    options.max_solver_time_in_seconds = std::numeric_limits<double>::max();
-    // Steps are cut at the bounds. A line search along the bounds would cost evaluations.
-    options.max_num_line_search_step_size_iterations = 0;
-    options.jacobi_scaling = settings_.jacobi_scaling;
-    options.min_lm_diagonal = settings_.min_damping;
-    options.initial_trust_region_radius = settings_.initial_radius;
-    options.function_tolerance = settings_.function_tolerance;
-    options.parameter_tolerance = settings_.parameter_tolerance;
-    options.callbacks.push_back(&callback);
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
+    solver_.minimize_squares(cost, p, problem);
   }
 
   LevenbergSettings settings_;
+  const CeresSolver& solver_;
 };
 
 }  // namespace
@@ -302,5 +286,3 @@ std::unique_ptr<Optimizer> make_levenberg_marquardt(const LevenbergSettings& set
 }
 
 }  // namespace armwright
-
-#endif

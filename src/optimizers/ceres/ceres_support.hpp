@@ -1,16 +1,21 @@
 // Code that both optimizers of Ceres share. Only their .cpp files include this header.
 #pragma once
 
-#include <ceres/ceres.h>
-
 #include <exception>
+#include <string_view>
 
-#include "optimizers/interface/evaluator.hpp"
+#include "optimizers/ceres_module/ceres_module.hpp"
 #include "optimizers/interface/scalar_function.hpp"
+#include "process/module_loader.hpp"
 
 namespace armwright {
 
 constexpr double kCeresBoxWidth = 10;  // in the coordinates that Ceres sees
+
+// Loads the module. Throws as load_module().
+inline const CeresSolver& load_ceres(std::string_view user) {
+  return *reinterpret_cast<GetCeresSolver*>(load_module(kCeresModule, kCeresEntry, user))();
+}
 
 // Holds the first exception of the evaluator, since exceptions must not pass through Ceres. Every
 // later call fails at once. The exception is thrown again when Ceres has returned.
@@ -45,21 +50,6 @@ class HeldException {
 
  private:
   std::exception_ptr exception_;
-};
-
-// Stops Ceres after an iteration if the evaluator has stopped or thrown.
-class StopCallback : public ceres::IterationCallback {
- public:
-  StopCallback(const HeldException& held, const Evaluator& evaluator)
-      : held_(held), evaluator_(evaluator) {}
-
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    return held_.any() || evaluator_.stopped() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const HeldException& held_;
-  const Evaluator& evaluator_;
 };
 
 }  // namespace armwright

@@ -4,8 +4,8 @@
 
 #include "optimizers/interface/scalar_function.hpp"
 #include "optimizers/pagmo/pagmo_backend.hpp"
-#include "optimizers/pagmo/pagmo_loader.hpp"
 #include "optimizers/pagmo/pagmo_options.hpp"
+#include "process/module_loader.hpp"
 
 namespace armwright {
 namespace {
@@ -300,7 +300,7 @@ std::vector<OptimizerRow> make_multi_objective_rows() {
 }  // namespace
 
 std::vector<OptimizerRow> make_pagmo_rows() {
-  const std::string unavailable = explain_missing_pagmo();
+  const std::string unavailable = explain_missing(kPagmoModule);
   std::vector<OptimizerRow> rows;
   for (const auto make_rows : {make_differential_evolution_rows, make_swarm_rows,
                                make_evolution_rows, make_point_rows, make_multi_objective_rows}) {

@@ -13,7 +13,8 @@
 #include "base/error.hpp"
 #include "base/random.hpp"
 #include "optimizers/interface/scalar_function.hpp"
-#include "optimizers/pagmo/pagmo_loader.hpp"
+#include "optimizers/pagmo_module/pagmo_module.hpp"
+#include "process/module_loader.hpp"
 
 namespace armwright {
 namespace {
@@ -156,7 +157,8 @@ class PagmoOptimizer : public Optimizer {
   PagmoOptimizer(PagmoMethod method, Options options)
       : method_(std::move(method)), options_(std::move(options)) {
     require_options_that_fit();
-    make_search_ = load_pagmo_module(method_.row);
+    make_search_ = reinterpret_cast<MakePagmoSearch*>(
+        load_module(kPagmoModule, kPagmoEntry, fmt::format("optimizer '{}'", method_.row)));
     try {
       make_search();
     } catch (const std::exception& error) {

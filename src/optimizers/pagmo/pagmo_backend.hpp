@@ -1,6 +1,6 @@
 // Connects the rows of pagmo.cpp with the library pagmo 2.18, which only the module
 // libarmwright_pagmo.so contains (optimizers/pagmo_module). The module is loaded when an optimizer
-// is made.
+// is made (process/module_loader.hpp).
 #pragma once
 
 #include <memory>

@@ -279,8 +279,8 @@ class Search : public PagmoSearch {
 
 extern "C" {
 
-[[gnu::visibility("default")]] extern const char armwright_pagmo_id[];
-const char armwright_pagmo_id[] = ARMWRIGHT_PAGMO_ID;
+[[gnu::visibility("default")]] extern const char armwright_module_id[];
+const char armwright_module_id[] = ARMWRIGHT_MODULE_ID;
 
 [[gnu::visibility("default")]] armwright::MakePagmoSearch armwright_make_pagmo_search;
 armwright::PagmoSearch* armwright_make_pagmo_search(const std::string& algorithm,

@@ -1,10 +1,5 @@
 // The border between the program and the module libarmwright_pagmo.so, which alone contains and
-// needs pagmo. The program loads the module when an optimizer of pagmo is made, because pagmo takes
-// longer to load than everything else together.
-//
-// This header includes only the standard library, and the module is built of this folder alone. The
-// module's id is a hash of both files, the compiler, its flags and the version of pagmo
-// (cmake/pagmo_module.cmake). A program uses only a module with its own id.
+// needs pagmo. This header includes only the standard library.
 //
 // Exceptions cross the border in both directions: those of PagmoProblem::evaluate() come back out
 // of PagmoSearch::evolve(), and pagmo's own are std::exceptions.
@@ -63,11 +58,9 @@ class PagmoSearch {
   virtual void evolve() = 0;
 };
 
-// The symbols of the module. The id is a text.
-inline constexpr const char* kPagmoIdSymbol = "armwright_pagmo_id";
-inline constexpr const char* kPagmoSearchSymbol = "armwright_make_pagmo_search";
-// Makes a search by an algorithm with pagmo's name for it; the caller owns it. Throws an exception
+// The module's entry: makes a search by an algorithm with pagmo's name for it; the caller owns it. Throws an exception
 // of pagmo if pagmo refuses the options.
 using MakePagmoSearch = PagmoSearch*(const std::string& algorithm, const PagmoOptions& options);
+inline constexpr const char* kPagmoEntry = "armwright_make_pagmo_search";
 
 }  // namespace armwright

@@ -1,6 +1,5 @@
-// The module with pagmo (optimizers/pagmo/pagmo_loader.hpp): when the program loads it, where it
-// looks for it, and which one it refuses.
-#include "optimizers/pagmo_module/pagmo_module.hpp"
+// Modules (process/module_loader.hpp), with that of pagmo as the example: when the program loads
+// them, where it looks for them, and which ones it refuses.
 
 #include <dlfcn.h>
 #include <gmock/gmock.h>
@@ -11,6 +10,7 @@
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
 #include "optimizers/table/optimizer_table.hpp"
+#include "process/module_loader.hpp"
 
 namespace armwright {
 namespace {
@@ -22,25 +22,22 @@ using testing::Not;
 constexpr const char* kModule = "libarmwright_pagmo.so";
 using Words = std::vector<std::string>;
 
-std::string find_built_module() {
-  const std::filesystem::path program = ARMWRIGHT_BINARY;
-  return program.parent_path().parent_path() / "lib/armwright" / kModule;
-}
-
 // The loader writes what it opens to stderr.
 const Environment kTraced{.variables = {{"LD_DEBUG", "files"}}, .out_file = ""};
 
-class PagmoModule : public testing::Test {
+class ModuleLoading : public testing::Test {
  protected:
   void SetUp() override {
     if (find_optimizer("pagmo:de").unavailable.starts_with("built without")) {
       GTEST_SKIP() << find_optimizer("pagmo:de").unavailable;
     }
     // An installation: bin/armwright and lib/armwright. The configurations come from the variable.
+    const std::filesystem::path program = ARMWRIGHT_BINARY;
     std::filesystem::create_directories(folder_ / "bin");
-    std::filesystem::create_directories(module().parent_path());
-    std::filesystem::copy_file(ARMWRIGHT_BINARY, folder_ / "bin/armwright");
-    std::filesystem::copy_file(find_built_module(), module());
+    std::filesystem::create_directories(folder_ / "lib");
+    std::filesystem::copy_file(program, folder_ / "bin/armwright");
+    std::filesystem::copy(program.parent_path().parent_path() / "lib/armwright",
+                          module().parent_path());
   }
 
   std::filesystem::path module() const { return folder_ / "lib/armwright" / kModule; }
@@ -64,7 +61,7 @@ class PagmoModule : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(PagmoModule, IsLoadedOnlyByAnOptimizerOfPagmo) {
+TEST_F(ModuleLoading, IsLoadedOnlyByAnOptimizerOfPagmo) {
   ASSERT_EQ(run_program(folder_.path(),
                         {"compare", "--problems", "sphere", "--optimizers", "pagmo:de,pagmo:cmaes",
                          "--replicates", "3", "--budget", "60", "--out", "study"})
@@ -87,7 +84,8 @@ TEST_F(PagmoModule, IsLoadedOnlyByAnOptimizerOfPagmo) {
            {"report", "study", "--quiet"}}) {
     const Outcome outcome = run_copy(words, kTraced);
     EXPECT_EQ(outcome.exit_code, 0) << words[0] << outcome.out;
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr("file=libc.so"), Not(HasSubstr("pagmo.so"))))
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("file=libode.so"), Not(HasSubstr("pagmo.so")),
+                                   Not(HasSubstr("ceres.so")), Not(HasSubstr("liblapack"))))
         << words[0];
   }
   const Outcome outcome = optimize(kTraced);
@@ -95,7 +93,7 @@ TEST_F(PagmoModule, IsLoadedOnlyByAnOptimizerOfPagmo) {
               AllOf(HasSubstr("file=" + module().string()), HasSubstr("file=libpagmo.so")));
 }
 
-TEST_F(PagmoModule, AMissingOneIsNamedAndNothingElseIsTaken) {
+TEST_F(ModuleLoading, AMissingOneIsNamedAndNothingElseIsTaken) {
   // Decoys where a loader that searches would find them.
   std::filesystem::create_directories(folder_ / "elsewhere");
   for (const char* place : {".", "elsewhere", "lib"}) {
@@ -119,10 +117,10 @@ TEST_F(PagmoModule, AMissingOneIsNamedAndNothingElseIsTaken) {
   EXPECT_THAT(run_copy({"doctor"}).out, HasSubstr("is missing"));
 }
 
-TEST_F(PagmoModule, OneOfAnotherBuildIsRefused) {
+TEST_F(ModuleLoading, OneOfAnotherBuildIsRefused) {
   void* const opened = dlopen(module().c_str(), RTLD_NOW | RTLD_LOCAL);
   ASSERT_NE(opened, nullptr) << dlerror();
-  const std::string own = static_cast<const char*>(dlsym(opened, kPagmoIdSymbol));
+  const std::string own = static_cast<const char*>(dlsym(opened, kModuleIdSymbol));
   ASSERT_EQ(own.size(), 16u);
   std::string bytes = read_text(module());
   const std::size_t at = bytes.find(own);
@@ -140,7 +138,7 @@ TEST_F(PagmoModule, OneOfAnotherBuildIsRefused) {
   EXPECT_THAT(doctor.out, HasSubstr("belongs to another build"));
 }
 
-TEST_F(PagmoModule, OneThatIsNotWholeIsRefused) {
+TEST_F(ModuleLoading, OneThatIsNotWholeIsRefused) {
   const std::string bytes = read_text(module());
   for (const std::size_t size :
        {std::size_t{0}, std::size_t{40}, std::size_t{4096}, bytes.size() / 2, bytes.size() - 1}) {
@@ -156,7 +154,7 @@ TEST_F(PagmoModule, OneThatIsNotWholeIsRefused) {
   EXPECT_THAT(optimize().err, HasSubstr("is not a shared library"));
 }
 
-TEST_F(PagmoModule, ALibraryWithoutItsSymbolsIsRefused) {
+TEST_F(ModuleLoading, ALibraryWithoutItsSymbolsIsRefused) {
   std::filesystem::remove(module());
   std::filesystem::copy_file(std::string(ARMWRIGHT_TEST_PLUGINS) + "/libgood.so", module());
   const Outcome outcome = optimize();
@@ -164,8 +162,17 @@ TEST_F(PagmoModule, ALibraryWithoutItsSymbolsIsRefused) {
   EXPECT_THAT(outcome.err, HasSubstr("lacks the symbols"));
 }
 
+// A RUNPATH with an empty element would do that.
+TEST_F(ModuleLoading, NoLibraryIsTakenFromTheCurrentFolder) {
+  for (const char* library : {"libode.so.8", "libmpi.so.40", "libstdc++.so.6"}) {
+    std::ofstream(folder_ / library) << "no library";
+  }
+  const Outcome outcome = run_program(folder_.path(), {"--version"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
 // A user's program that links armwright's libraries has the module in its own folder.
-TEST_F(PagmoModule, MayLieBesideTheProgram) {
+TEST_F(ModuleLoading, MayLieBesideTheProgram) {
   std::filesystem::rename(module(), folder_ / "bin" / kModule);
   const Outcome outcome = optimize();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
