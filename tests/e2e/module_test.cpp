@@ -114,7 +114,7 @@ TEST_F(ModuleLoading, AMissingOneIsNamedAndNothingElseIsTaken) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "run"));
   EXPECT_EQ(run_copy({"list", "optimizers"}).exit_code, 0);
   EXPECT_THAT(run_copy({"list", "optimizers", "pagmo:de"}).out, HasSubstr("is missing"));
-  EXPECT_THAT(run_copy({"doctor"}).out, HasSubstr("is missing"));
+  EXPECT_THAT(run_copy({"doctor", "--json"}).out, HasSubstr("is missing"));
 }
 
 TEST_F(ModuleLoading, OneOfAnotherBuildIsRefused) {
@@ -133,7 +133,7 @@ TEST_F(ModuleLoading, OneOfAnotherBuildIsRefused) {
               HasSubstr("optimizer 'pagmo:de': its module " + module().string() +
                         " belongs to another build of armwright: its id is " + other +
                         ", and this build needs " + own + "; install armwright again"));
-  const Outcome doctor = run_copy({"doctor"});
+  const Outcome doctor = run_copy({"doctor", "--json"});
   EXPECT_NE(doctor.exit_code, 0);
   EXPECT_THAT(doctor.out, HasSubstr("belongs to another build"));
 }

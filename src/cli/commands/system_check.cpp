@@ -92,8 +92,7 @@ void check_optimizers(Checks& checks) {
       checks.push_back({"optimizers", library.name, CheckState::good,
                         fmt::format("{} optimizers", rows.size())});
     } catch (const Error& error) {
-      checks.push_back(
-          {"optimizers", library.name, CheckState::bad, error.what(), "install armwright again"});
+      checks.push_back({"optimizers", library.name, CheckState::bad, error.what()});
     }
   }
 }

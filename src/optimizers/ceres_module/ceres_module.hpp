@@ -25,8 +25,8 @@ class CeresFunction {
 // The residuals are the values of the function.
 struct CeresLeastSquares {
   std::size_t residual_count = 0;
-  std::vector<double> lower;  // bounds of p
-  std::vector<double> upper;
+  std::vector<double> lower = {};  // bounds of p
+  std::vector<double> upper = {};
   bool jacobi_scaling = false;
   double min_damping = 0;
   double initial_radius = 0;
