@@ -144,7 +144,7 @@ def main():
         program = session.Program(session.find_program())
         rows = table.Table(TABLE)
         if options.table:
-            faults += find_table_faults(list_pages(), rows, program, reliability_test.list_tests("ctest", options.tests) if options.tests else None)
+            faults += find_table_faults(list_pages(), rows, program, {reliability_test.plain(name) for name in reliability_test.list_tests("ctest", options.tests)} if options.tests else None)
         for page in options.pages:
             faults += try_page(page, rows, program, full, options.keep, say)
     except markdown.Failure as failure:

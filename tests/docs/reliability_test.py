@@ -11,13 +11,24 @@ ROOMS = "base|cli|contract|e2e|faults|optimizers|page|problems|report|sim|study|
 
 def plain(name):
     """Room.Instantiation/Suite.Test/parameter without what values and types it is tried with."""
-    name = name.split("  #")[0]
     return re.sub(r"^(\w+)\.(?:\w+/)?([\w]+)(?:/\w+)?\.(\w+)(?:/\w+)?$", r"\1.\2.\3", name)
 
 
 def list_tests(ctest, build):
+    """The names of all tests of ctest, and of those in the test programs as PROGRAM.SUITE.TEST."""
     text = subprocess.run([ctest, "-N"], cwd=build, check=True, capture_output=True, text=True).stdout
-    return {plain(line.split(": ", 1)[1].strip()) for line in text.splitlines() if re.match(r"\s*Test\s+#\d+: ", line)}
+    names = {line.split(": ", 1)[1].strip() for line in text.splitlines() if re.match(r"\s*Test\s+#\d+: ", line)}
+    for program in sorted((pathlib.Path(build) / "bin").glob("*_tests")):
+        room = program.name.removesuffix("_tests")
+        text = subprocess.run([program, "--gtest_list_tests"], check=True, capture_output=True, text=True).stdout
+        suite = ""
+        for line in text.splitlines():
+            name = line.split("#")[0].rstrip()
+            if not line.startswith(" "):
+                suite = name
+            else:
+                names.add(f"{room}.{suite}{name.strip()}")
+    return names
 
 
 def list_named(text):
@@ -27,7 +38,7 @@ def list_named(text):
 
 
 def main(ctest, build):
-    tests = list_tests(ctest, build)
+    tests = {plain(name) for name in list_tests(ctest, build)}
     named = list_named(PAGE.read_text())
     faults = {test for test in tests if test.startswith("faults.")}
     problems = [f"{name}: the page names it, and there is no such test" for name in sorted(named - tests)]

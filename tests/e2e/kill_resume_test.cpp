@@ -16,7 +16,7 @@
 namespace armwright {
 namespace {
 
-// 420 evaluations with either engine, for the fast one of a hundred cases each, or in races of 35
+// 140 evaluations with either engine, for the fast one of a hundred cases each, or in races of 35
 // candidates on 3880 cases: long enough to be killed ten times.
 struct Setting {
   const char* name;
@@ -33,7 +33,7 @@ std::vector<std::string> make_command(const Setting& setting, const std::string&
           "--schedule", setting.schedule,
           "--racing",   setting.racing,
           "--budget",   setting.budget,
-          "--set",      "sets.test_cases=20",
+          "--set",      "sets.test_cases=8",
           "--jobs",     jobs,
           "--set",      "sets.validation_cases=5",
           "--out",      out,
@@ -43,7 +43,7 @@ std::vector<std::string> make_command(const Setting& setting, const std::string&
 void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b) {
   const JournalContent first = read_journal(a / "journal");
   const JournalContent second = read_journal(b / "journal");
-  EXPECT_EQ(first.training.size(), 420u);
+  EXPECT_EQ(first.training.size(), 140u);
   ASSERT_EQ(first.training.size(), second.training.size());
   for (std::size_t i = 0; i < first.training.size(); ++i) {
     const EvaluationRecord& one = first.training[i];
@@ -78,7 +78,7 @@ TEST_P(KillAndResume, TenKillsAndAnyNumberOfThreadsChangeNothing) {
   int kills = 0;
   while (kills < 10) {
     Program program(folder.path(), make("killed", kills % 2 == 0 ? "2" : "1"));
-    const auto wait_ms = static_cast<long>(random.uniform(20, 150));
+    const auto wait_ms = static_cast<long>(random.uniform(20, 110));
     std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
     ASSERT_TRUE(program.is_running()) << "the run ended before it could be killed ten times";
     program.send(SIGKILL);
@@ -93,10 +93,10 @@ TEST_P(KillAndResume, TenKillsAndAnyNumberOfThreadsChangeNothing) {
 
 INSTANTIATE_TEST_SUITE_P(
     Engines, KillAndResume,
-    testing::Values(Setting{"ode", "ode", "fresh:1", "none", "420"},
-                    Setting{"articulated", "articulated", "fresh:100", "none", "42000"},
-                    Setting{"races", "articulated", "fixed:400", "halving:40:2", "46560"},
-                    Setting{"coevolution", "articulated", "coevolution:100", "none", "42000"}),
+    testing::Values(Setting{"ode", "ode", "fresh:1", "none", "140"},
+                    Setting{"articulated", "articulated", "fresh:100", "none", "14000"},
+                    Setting{"races", "articulated", "fixed:400", "halving:40:2", "15520"},
+                    Setting{"coevolution", "articulated", "coevolution:100", "none", "14000"}),
     [](const auto& test) { return test.param.name; });
 
 }  // namespace

@@ -92,8 +92,21 @@ std::ostream& operator<<(std::ostream& out, const RankSetting& setting) {
 
 class MpiRuns : public Mpi, public testing::WithParamInterface<RankSetting> {};
 
+std::string get_name(const testing::TestParamInfo<RankSetting>& setting) {
+  return setting.param.name;
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Settings, MpiRuns,
+    testing::Values(RankSetting{"Races",
+                                {"--engine", "articulated", "--optimizer", "cmaes", "--schedule",
+                                 "fresh:32", "--racing", "halving:4:2", "--budget", "1000"}},
+                    RankSetting{
+                        "Jacobians",
+                        {"--engine", "articulated", "--optimizer", "ceres:lm", "--budget", "100"}}),
+    get_name);
+INSTANTIATE_TEST_SUITE_P(
+    Long, MpiRuns,
     testing::Values(
         RankSetting{"Ode", {"--budget", "70"}},
         RankSetting{"Lanes",
@@ -105,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(
                     {"--engine", "articulated", "--optimizer", "ceres:lm", "--budget", "300"}},
         RankSetting{"OneAfterTheOther",
                     {"--engine", "articulated", "--optimizer", "nlopt:bobyqa", "--budget", "100"}}),
-    [](const auto& setting) { return setting.param.name; });
+    get_name);
 
 TEST_P(MpiRuns, WriteTheSameOnAnyNumberOfRanksAndThreads) {
   const auto make_command = [&](const std::string& out, const char* jobs) {
@@ -135,7 +148,7 @@ TEST_P(MpiRuns, WriteTheSameOnAnyNumberOfRanksAndThreads) {
 struct UserProblem {
   const char* name;
   const char* problem;
-  const char* optimizers;  // eight
+  const char* optimizers;
   const char* requirement =
       "true";  // a command of the shell that succeeds where the problem can run
   const char* budget = "20";
@@ -151,11 +164,22 @@ constexpr const char* kEight =
 
 class MpiUserProblem : public Mpi, public testing::WithParamInterface<UserProblem> {};
 
+constexpr const char* kResiduals =
+    "exec:python3 " ARMWRIGHT_TEST_PLUGINS_SOURCE "/problem.py slow-squares";
+
+std::string get_problem_name(const testing::TestParamInfo<UserProblem>& problem) {
+  return problem.param.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Problems, MpiUserProblem,
+                         testing::Values(UserProblem{"Residuals", kResiduals,
+                                                     "ga,nlopt:bobyqa,ceres:lm"}),
+                         get_problem_name);
 INSTANTIATE_TEST_SUITE_P(
-    Problems, MpiUserProblem,
+    Long, MpiUserProblem,
     testing::Values(
         UserProblem{"Residuals",
-                    "exec:python3 " ARMWRIGHT_TEST_PLUGINS_SOURCE "/problem.py slow-squares",
+                    kResiduals,
                     "ga,cmaes,lhs,nlopt:cobyla,nlopt:bobyqa,pagmo:de,pagmo:pso,ceres:lm", "true",
                     "60", "2"},
         UserProblem{"Motor",
@@ -165,10 +189,10 @@ INSTANTIATE_TEST_SUITE_P(
                     "test -e " ARMWRIGHT_TEST_LIBRARIES "/libcart_pole.so"},
         UserProblem{"Filter", ARMWRIGHT_CONFIGS "/../examples/filter/filter.toml", kEight,
                     "command -v ngspice"}),
-    [](const auto& problem) { return problem.param.name; });
+    get_problem_name);
 
 // Every rank starts the processes of the problem for itself.
-TEST_P(MpiUserProblem, ComparesEightOptimizersWithTheSameBytesForAnyThreadsAndRanks) {
+TEST_P(MpiUserProblem, ComparesOptimizersWithTheSameBytesForAnyThreadsAndRanks) {
   const UserProblem& user = GetParam();
   if (std::system((std::string(user.requirement) + " >/dev/null 2>&1").c_str()) != 0) {
     GTEST_SKIP() << "the problem cannot run here, because this fails: " << user.requirement
@@ -195,8 +219,8 @@ TEST_P(MpiUserProblem, ComparesEightOptimizersWithTheSameBytesForAnyThreadsAndRa
 // Evaluations of several milliseconds each.
 std::vector<std::string> make_long_command(const std::string& out) {
   return {"optimize", "q1-complex",
-          "--budget", "420",
-          "--set",    "sets.test_cases=20",
+          "--budget", "210",
+          "--set",    "sets.test_cases=8",
           "--set",    "sets.validation_cases=5",
           "--jobs",   "1",
           "--out",    out};

@@ -92,6 +92,7 @@ class Slurm : public testing::Test {
       }
       return ::waitpid(-1, nullptr, WNOHANG) < 0;
     })) << "processes are left behind";
+    ::prctl(PR_SET_CHILD_SUBREAPER, 0);
   }
 
   Outcome run(const std::vector<std::string>& words) {

@@ -50,7 +50,7 @@ TEST_F(Cells, KilledAtEveryWriteAndEveryRenameGoOnInTheNextAttempt) {
   for (const char* call : {"write", "rename"}) {
     FailingFiles files(folder_ / "runs", call);
     std::uint64_t at = 1;
-    for (;; ++at) {
+    for (;; at += sample_or_all(2, 1)) {
       SCOPED_TRACE(call + std::to_string(at));
       const std::string study = make_study(call + std::to_string(at));
       const Outcome killed = run({"cell", study, "0"}, files.make_environment(Fault::kill, at, 0));
@@ -67,7 +67,7 @@ TEST_F(Cells, KilledAtEveryWriteAndEveryRenameGoOnInTheNextAttempt) {
 TEST_F(Cells, OnADiskThatFailsTellItAndGoOnLater) {
   for (const char* call : {"write", "rename"}) {
     FailingFiles files(folder_ / "runs", call);
-    for (std::uint64_t at = 1;; ++at) {
+    for (std::uint64_t at = 1;; at += sample_or_all(2, 1)) {
       SCOPED_TRACE(call + std::to_string(at));
       const std::string study = make_study(call + std::to_string(at));
       const Outcome failed =

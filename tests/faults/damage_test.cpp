@@ -46,12 +46,12 @@ TEST_F(Damage, AJournalTruncatedAtEveryPageAndAroundARecordIsMended) {
   const auto size = get_size(folder_ / "whole/journal");
   constexpr std::uintmax_t kPage_bytes = 4096;
   std::vector<std::uintmax_t> lengths;
-  for (std::uintmax_t length = 0; length < size; length += kPage_bytes) {
+  for (std::uintmax_t length = 0; length < size; length += sample_or_all(2, 1) * kPage_bytes) {
     lengths.push_back(length);
   }
   const std::uintmax_t record_bytes =
       (size - 8) / read_journal(folder_ / "whole/journal").training.size();
-  for (std::uintmax_t length = size - record_bytes; length < size; length += 9) {
+  for (std::uintmax_t length = size - record_bytes; length < size; length += sample_or_all(31, 9)) {
     lengths.push_back(length);
   }
   ASSERT_GT(lengths.size(), 10u);
@@ -83,8 +83,9 @@ TEST_F(Damage, ASmallJournalTruncatedInEveryRecordIsMended) {
   ASSERT_EQ(run(make("small")).exit_code, 0);
   const auto size = get_size(folder_ / "small/journal");
   ASSERT_LT(size, 1500u);
-  // 13 is prime to the sizes of fields and records, so that the cuts fall differently in each.
-  for (std::uintmax_t length = 0; length < size; length += 13) {
+  // These steps are prime to the sizes of fields and records, so that the cuts fall differently in
+  // each.
+  for (std::uintmax_t length = 0; length < size; length += sample_or_all(41, 13)) {
     SCOPED_TRACE(length);
     fs::create_directory(folder_ / "torn");
     for (const char* file : {"manifest.json", "journal"}) {
@@ -106,7 +107,7 @@ TEST_F(Damage, AChangedByteOfTheJournalIsNamedByItsPlace) {
       (whole.size() - 8) / (read_journal(folder_ / "whole/journal").training.size() + 10);
   std::vector<std::size_t> offsets = {0, 7};
   for (const std::size_t begin : {std::size_t{8}, whole.size() / 2, whole.size() - 4 * record}) {
-    for (std::size_t i = 0; i < record; i += 23) {
+    for (std::size_t i = 0; i < record; i += sample_or_all(61, 23)) {
       offsets.push_back(begin + i);
     }
   }
@@ -129,7 +130,7 @@ TEST_F(Damage, AChangedByteOfTheJournalIsNamedByItsPlace) {
     ++refused;
     fs::remove_all(folder_ / "damaged");
   }
-  EXPECT_GT(refused, 20);
+  EXPECT_GT(refused, 15);
   // If the last byte of the file has changed, its record is evaluated again.
   const auto journal = copy_journal("end", whole.size());
   flip_byte(journal, whole.size() - 1);
@@ -253,7 +254,7 @@ TEST_F(Damage, KillsDuringTheMendingAreMendedAsWell) {
   const auto half = get_size(folder_ / "whole/journal") / 2;
   for (const char* call : {"write", "ftruncate", "fdatasync", "rename", "open"}) {
     FailingFiles files(folder_ / "runs", call);
-    for (std::uint64_t at = 1;; ++at) {
+    for (std::uint64_t at = 1;; at += sample_or_all(3, 1)) {
       SCOPED_TRACE(call + std::to_string(at));
       copy_journal("runs/run", half);
       const Outcome killed = run(make_run("runs/run"), files.make_environment(Fault::kill, at, 0));

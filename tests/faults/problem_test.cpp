@@ -73,16 +73,22 @@ TEST_P(KilledProblem, EndsWithTheSameBytesAfterTenKills) {
   expect_same_run(folder_ / "whole", folder_ / "runs/killed");
 }
 
+std::string make_name(const testing::TestParamInfo<std::tuple<const char*, const char*>>& test) {
+  std::string name = std::string(std::get<0>(test.param)) + "_" + std::get<1>(test.param);
+  std::erase(name, ':');
+  return name;
+}
+
 INSTANTIATE_TEST_SUITE_P(Ways, KilledProblem,
+                         testing::Values(std::tuple("program", "ga"),
+                                         std::tuple("library", "cmaes"),
+                                         std::tuple("python", "ceres:lm")),
+                         make_name);
+INSTANTIATE_TEST_SUITE_P(Long, KilledProblem,
                          testing::Combine(testing::Values("program", "library", "python"),
                                           testing::Values("ga", "cmaes", "pagmo:de", "nlopt:cobyla",
                                                           "ceres:lm", "random")),
-                         [](const auto& test) {
-                           std::string name =
-                               std::string(std::get<0>(test.param)) + "_" + std::get<1>(test.param);
-                           std::erase(name, ':');
-                           return name;
-                         });
+                         make_name);
 
 // A problem whose cases do not end as long as a file is missing, by the way on which armwright
 // reaches it.

@@ -20,6 +20,7 @@
 #include "base/temporary_folder.hpp"
 #include "e2e/processes.hpp"
 #include "e2e/program.hpp"
+#include "sample_or_all.hpp"
 #include "study/journal/journal.hpp"
 #include "wait_until.hpp"
 
