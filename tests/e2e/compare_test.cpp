@@ -26,7 +26,7 @@ std::vector<std::string> make_command(const std::string& out, const std::string&
           "--optimizers",
           "ga,cmaes",
           "--replicates",
-          "6",
+          "3",
           "--budget",
           budget,
           "--engine",

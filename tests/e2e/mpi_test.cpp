@@ -96,15 +96,15 @@ std::string get_name(const testing::TestParamInfo<RankSetting>& setting) {
   return setting.param.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Settings, MpiRuns,
-    testing::Values(RankSetting{"Races",
-                                {"--engine", "articulated", "--optimizer", "cmaes", "--schedule",
-                                 "fresh:32", "--racing", "halving:4:2", "--budget", "1000"}},
-                    RankSetting{
-                        "Jacobians",
-                        {"--engine", "articulated", "--optimizer", "ceres:lm", "--budget", "100"}}),
-    get_name);
+INSTANTIATE_TEST_SUITE_P(Settings, MpiRuns,
+                         testing::Values(RankSetting{"Races",
+                                                     {"--engine", "articulated", "--optimizer",
+                                                      "cmaes", "--schedule", "fresh:32", "--racing",
+                                                      "halving:4:2", "--budget", "1000"}},
+                                         RankSetting{"Jacobians",
+                                                     {"--engine", "articulated", "--optimizer",
+                                                      "ceres:lm", "--budget", "100"}}),
+                         get_name);
 INSTANTIATE_TEST_SUITE_P(
     Long, MpiRuns,
     testing::Values(
@@ -178,8 +178,7 @@ INSTANTIATE_TEST_SUITE_P(Problems, MpiUserProblem,
 INSTANTIATE_TEST_SUITE_P(
     Long, MpiUserProblem,
     testing::Values(
-        UserProblem{"Residuals",
-                    kResiduals,
+        UserProblem{"Residuals", kResiduals,
                     "ga,cmaes,lhs,nlopt:cobyla,nlopt:bobyqa,pagmo:de,pagmo:pso,ceres:lm", "true",
                     "60", "2"},
         UserProblem{"Motor",

@@ -10,6 +10,7 @@
 
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
+#include "sample_or_all.hpp"
 
 namespace armwright {
 namespace {
@@ -69,18 +70,22 @@ class CommittedDesigns : public testing::TestWithParam<Promise> {
   }
 };
 
-// All that the table says, as a whole on the fast engine.
+// All that the table says, as a whole on the fast engine, or for the first tenth of the cases.
 TEST_P(CommittedDesigns, HoldOnEveryUnseenCase) {
   const auto row = read_judged(GetParam(), "articulated");
-  const json summary = evaluate("articulated", std::stoi(row.at("cases")));
+  const int cases = sample_or_all(1'000, 10'000);
+  const json summary = evaluate("articulated", cases);
   EXPECT_EQ(row.at("cases"), "10000");
   EXPECT_EQ(row.at("failures"), "0");
   EXPECT_EQ(summary["failures"], 0);
   EXPECT_LE(summary["mean_error_m"], GetParam().mean_error_m);
   EXPECT_LE(summary["total_torque_n_m"], GetParam().total_torque_n_m);
-  // Another instruction set rounds differently, and a design near its limits magnifies that.
-  const double recorded = std::stod(row.at("mean_error_m"));
-  EXPECT_NEAR(summary["mean_error_m"].get<double>(), recorded, 0.05 * recorded);
+  // Another instruction set rounds differently, and a design near its limits magnifies that. A few
+  // large errors make a tenth of the mean, so a sample has a median only: that of 1000 errors, which
+  // differ by about half of it, has a standard error of 2 %, and the tolerance is five of these.
+  const char* statistic = cases < 10'000 ? "median_error_m" : "mean_error_m";
+  const double recorded = std::stod(row.at(statistic));
+  EXPECT_NEAR(summary[statistic].get<double>(), recorded, (cases < 10'000 ? 0.1 : 0.05) * recorded);
   EXPECT_EQ(summary["total_torque_n_m"], std::stod(row.at("total_torque_n_m")));
 }
 
@@ -89,7 +94,7 @@ TEST_P(CommittedDesigns, HoldOnOde) {
   const auto row = read_judged(GetParam(), "ode");
   EXPECT_EQ(row.at("failures"), "0");
   EXPECT_LE(std::stod(row.at("mean_error_m")), GetParam().mean_error_m);
-  const json summary = evaluate("ode", GetParam().substeps == 1 ? 100 : 10);
+  const json summary = evaluate("ode", GetParam().substeps == 1 ? sample_or_all(20, 100) : 10);
   EXPECT_EQ(summary["failures"], 0);
   EXPECT_LE(summary["mean_error_m"], GetParam().mean_error_m);
 }

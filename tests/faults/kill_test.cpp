@@ -176,17 +176,16 @@ TEST_P(KillAgainAndAgain, AndResumeEachTime) {
   expect_same_run(folder / "whole", folder / "runs/killed");
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Optimizers, KillAgainAndAgain,
-    testing::Values(Setting{"ga", "ga", "fresh:1", 30, 30},
-                    Setting{"cmaes", "cmaes", "fixed:1", 30, 100},
-                    Setting{"bobyqa", "nlopt:bobyqa", "fixed:1", 30, 30},
-                    Setting{"de", "pagmo:de", "fixed:1", 30, 30},
-                    Setting{"lm", "ceres:lm", "fixed:3", 45, 30},
-                    Setting{"library", get_plugin("good"), "fixed:1", 30, 30},
-                    Setting{"program", "exec:python3 " + get_script("good.py"), "fresh:1", 30, 100,
-                            5}),
-    [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(Optimizers, KillAgainAndAgain,
+                         testing::Values(Setting{"ga", "ga", "fresh:1", 30, 30},
+                                         Setting{"cmaes", "cmaes", "fixed:1", 30, 100},
+                                         Setting{"bobyqa", "nlopt:bobyqa", "fixed:1", 30, 30},
+                                         Setting{"de", "pagmo:de", "fixed:1", 30, 30},
+                                         Setting{"lm", "ceres:lm", "fixed:3", 45, 30},
+                                         Setting{"library", get_plugin("good"), "fixed:1", 30, 30},
+                                         Setting{"program", "exec:python3 " + get_script("good.py"),
+                                                 "fresh:1", 30, 100, 5}),
+                         [](const auto& test) { return test.param.name; });
 
 // The bytes in all journals of a study; one that does not exist yet has none.
 std::uintmax_t get_size_of_journals(const std::filesystem::path& study) {
