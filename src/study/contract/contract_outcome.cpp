@@ -86,7 +86,7 @@ ContractFinding check_learning(const OptimizerRow& row, const Options& options) 
   if (row.capabilities.sampling) {
     return make_exempt("it samples, and does not learn");
   }
-  const std::int64_t budget = limit_budget(row, 2000);
+  const std::int64_t budget = limit_budget(row, 5000);
   const OptimizerRow& random = find_optimizer("random");
   const Options random_options = Options::parse(random.name, random.options, {});
   const bool many = row.requirements.objectives > 1;
