@@ -15,11 +15,12 @@ def plain(name):
 
 
 def list_tests(ctest, build):
-    """The names of all tests of ctest, and of those in the test programs as PROGRAM.SUITE.TEST."""
+    """The names of the tests of ctest, with those in the test programs, as PROGRAM.SUITE.TEST, in place of the programs."""
     text = subprocess.run([ctest, "-N"], cwd=build, check=True, capture_output=True, text=True).stdout
     names = {line.split(": ", 1)[1].strip() for line in text.splitlines() if re.match(r"\s*Test\s+#\d+: ", line)}
     for program in sorted((pathlib.Path(build) / "bin").glob("*_tests")):
         room = program.name.removesuffix("_tests")
+        names = {name for name in names if not re.fullmatch(rf"{room}(\.\d+|\.long)?", name)}
         text = subprocess.run([program, "--gtest_list_tests"], check=True, capture_output=True, text=True).stdout
         suite = ""
         for line in text.splitlines():
