@@ -40,5 +40,21 @@ echarts.use([
   LabelLayout,
 ]);
 
+// ECharts takes the width of this letter as the height of a line. Where no font has the letter, its width depends on the
+// fonts that are installed, and labels would overlap. So it is as wide as the font is high, as it is without a browser.
+const kWideLetter = '\u56fd';
+const context = typeof document === 'undefined' ? null : document.createElement('canvas').getContext('2d');
+if (context !== null) {
+  echarts.setPlatformAPI({
+    measureText(text: string, font = '12px sans-serif') {
+      if (text === kWideLetter) {
+        return { width: parseFloat(/[\d.]+(?=px)/.exec(font)?.[0] ?? '12') };
+      }
+      context.font = font;
+      return context.measureText(text);
+    },
+  });
+}
+
 export { echarts };
 export type { EChartsCoreOption as EChartsOption, EChartsType } from 'echarts/core';

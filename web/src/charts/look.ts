@@ -15,7 +15,7 @@ export interface Look {
 
 // The names have no quotes, because ECharts writes them unchanged into attributes of its SVG. CSS
 // does not need quotes here.
-const kFont = 'system-ui, DejaVu Sans, Liberation Sans, Arial, sans-serif';
+const kFont = 'Arial, Liberation Sans, Nimbus Sans, Helvetica, DejaVu Sans, sans-serif';
 
 export const kLight: Look = {
   theme: 'light',

@@ -20,7 +20,7 @@ const kMostMargin = 0.76; // of the width, beside the curves
 const kMostRows = 6; // a longer legend keeps its pages
 const kHead_px = 24; // between the legend and the first panel: the heading of the panel, or numbers
 const kBelow_px = 46; // between two panels: the numbers of the axis, and the heading of the next panel
-const kLeft_px = 58; // for the numbers and the name of the axis
+const kLeft_px = 68; // for the name of the axis, a line that is up to 54 px away, and the numbers
 const kRight_px = 12;
 
 function get_name(entry: unknown): string {
