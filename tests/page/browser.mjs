@@ -1,10 +1,8 @@
 // Opens pages as a reader would: in Debian's Chromium, from disk. Whatever the page writes to the
 // console as an error, throws, or asks of the network is remembered and fails the test at its end.
 import assert from 'node:assert/strict';
-import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { existsSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 const { chromium } = createRequire(new URL('../../web/package.json', import.meta.url))('playwright-core');
@@ -19,24 +17,33 @@ const kFlags = [
   '--no-sandbox',
 ];
 
-// `options` are Playwright's for the context: with reducedMotion no animation takes processor time.
+const kLongest_ms = 120_000; // for what takes a second on a quiet machine
+
+let launched; // by the first test file of this process; the files share it
+let users = 0;
+
+// Returns a context of its own in this process's browser: pages of other contexts do not share what it stores, such as
+// the theme. `options` are Playwright's for the context: with reducedMotion no animation takes processor time.
 export async function open_browser(options = {}) {
   assert.ok(existsSync(kProgram), `${kProgram} is missing: install the Debian package chromium (scripts/setup --tests does)`);
-  const profile = mkdtempSync(join(tmpdir(), 'armwright-chromium-'));
-  const context = await chromium.launchPersistentContext(profile, {
-    executablePath: kProgram,
-    headless: true,
-    args: kFlags,
+  ++users;
+  launched ??= chromium.launch({ executablePath: kProgram, headless: true, args: kFlags });
+  const browser = await launched;
+  const context = await browser.newContext({
     viewport: { width: 1280, height: 900 },
     colorScheme: 'light',
     acceptDownloads: true,
     ...options,
   });
+  context.setDefaultTimeout(kLongest_ms);
   return {
     context,
     async close() {
       await context.close();
-      rmSync(profile, { recursive: true, force: true });
+      if (--users === 0) {
+        launched = undefined;
+        await browser.close();
+      }
     },
   };
 }
@@ -82,6 +89,15 @@ export async function list_tabs(page) {
 export async function open_tab(page, id) {
   await page.click(`[role=tab][data-tab="${id}"]`);
   await page.waitForSelector(`[role=tab][data-tab="${id}"][aria-selected=true]`);
+}
+
+// Returns when the page has drawn so many frames.
+export async function draw_frames(page, count) {
+  await page.evaluate(async (frames) => {
+    for (let i = 0; i < frames; ++i) {
+      await new Promise((resolve) => requestAnimationFrame(resolve));
+    }
+  }, count);
 }
 
 // The card of a figure or table, its chart drawn.

@@ -3,7 +3,6 @@ import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { open_browser, open_page, open_tab } from './browser.mjs';
-import { check_every_tab } from './every_tab.mjs';
 import { kFolder } from './make_pages.mjs';
 
 let browser;
@@ -18,20 +17,6 @@ test('two runs: the first screen says which one is better, and both move togethe
   assert.match(headline, /[AB] has the smaller mean error at rest on the test set: [\d.]+ mm against [\d.]+ mm/);
   assert.match(headline, /A is better in \d+ of 500 and B in \d+; /);
   assert.match(headline, /tested on the same cases, but the budget differs/);
-  const names = await check_every_tab(page);
-  for (const name of [
-    'health-a',
-    'health-b',
-    'differences',
-    'courses',
-    'test-errors',
-    'case-pairs',
-    'distance-response',
-    'momentary-error',
-  ]) {
-    assert.ok(names.includes(name), `${name} is missing`);
-  }
-  await open_tab(page, 'overview');
   assert.deepEqual(await page.locator('.summary > h3', { hasText: /^[AB]: / }).allInnerTexts(), [
     'A: ga on q1-complex',
     'B: cmaes on q1-complex',
@@ -55,12 +40,6 @@ test('two studies: what both have is compared', async () => {
   const headline = await page.locator('[data-figure=headline]').innerText();
   assert.match(headline, /The studies are comparable/);
   assert.match(headline, /Only A has nlopt:bobyqa and q2-e6/);
-  const names = await check_every_tab(page);
-  assert.ok(
-    ['compared-grid', 'convergence', 'values'].every((name) => names.includes(name)),
-    names.join(', '),
-  );
-  await open_tab(page, 'overview');
   assert.equal(await page.locator('[data-figure=compared-cells] tbody tr').count(), 3); // ga, cmaes and random on q1-complex
   expect_no_faults();
   await page.close();

@@ -1,33 +1,41 @@
-// The datasheet as a printer gets it: one page of A4, without scripts, nothing cut off at its side.
+// The data sheet as a printer gets it: one page of A4, without scripts, nothing cut off at its side. And on screens.
 import assert from 'node:assert/strict';
 import { readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { open_browser } from './browser.mjs';
+import { find_layout_faults, find_violations } from './examine.mjs';
 import { kFolder, run_program } from './make_pages.mjs';
 
 let browser;
+let folder; // with the data sheet of the run
 before(async () => {
   browser = await open_browser();
+  folder = export_datasheet('run');
 });
 after(() => browser.close());
 
-async function open_datasheet(run) {
-  const out = join(kFolder, 'datasheet');
+// Writes the data sheet of the run and returns its folder.
+function export_datasheet(run) {
+  const out = join(kFolder, `datasheet-of-${run}`);
   rmSync(out, { recursive: true, force: true });
-  run_program('export', run, '--format', 'datasheet', '--out', out);
-  const page = await browser.context.newPage();
-  return { page, out };
+  run_program('export', join(kFolder, run), '--format', 'datasheet', '--out', out);
+  return out;
 }
 
-async function expect_one_page(run) {
-  const { page, out } = await open_datasheet(run);
+async function open_datasheet(out) {
+  const page = await browser.context.newPage();
   const requests = [];
   page.on('request', (request) => requests.push(request.url()));
   const url = pathToFileURL(join(out, 'datasheet.html')).href;
   await page.goto(url);
   assert.deepEqual(requests, [url]);
+  return page;
+}
+
+async function expect_one_page(out) {
+  const page = await open_datasheet(out);
   assert.equal(await page.locator('script').count(), 0);
   const pdf = (await page.pdf({ preferCSSPageSize: true })).toString('latin1');
   assert.equal(pdf.match(/\/Type\s*\/Page\b/g).length, 1);
@@ -40,8 +48,7 @@ async function expect_one_page(run) {
 
 test('has the three errors, the whole workspace and speed, and the command that made it', async () => {
   const run = join(kFolder, 'run');
-  const { page, out } = await open_datasheet(run);
-  await page.goto(pathToFileURL(join(out, 'datasheet.html')).href);
+  const page = await open_datasheet(folder);
   await page.emulateMedia({ media: 'print' });
   const text = await page.locator('body').innerText();
   const { test_motion: motion } = JSON.parse(readFileSync(join(run, 'result.json'), 'utf8')).winner;
@@ -60,7 +67,7 @@ test('has the three errors, the whole workspace and speed, and the command that 
   await page.close();
 });
 
-test('a PID fits on one page', () => expect_one_page(join(kFolder, 'run')));
+test('a PID fits on one page', () => expect_one_page(folder));
 
 test('so does the controller with the most gains', async () => {
   const run = join(kFolder, 'neural');
@@ -68,5 +75,30 @@ test('so does the controller with the most gains', async () => {
   const flags = ['--optimizer', 'cmaes', '--engine', 'articulated', '--budget', '60', '--set', 'control.controller=neural'];
   const sets = ['--set', 'sets.validation_cases=1', '--set', 'sets.test_cases=2'];
   run_program('optimize', 'q1-complex', ...flags, ...sets, '--out', run, '--quiet');
-  await expect_one_page(run);
+  await expect_one_page(export_datasheet('neural'));
+});
+
+test('a data sheet fits every width in both themes, and axe-core finds nothing on it', async () => {
+  const page = await open_datasheet(folder);
+  const found = [];
+  for (const width of [390, 768, 1280, 1920]) {
+    await page.setViewportSize({ width, height: 844 });
+    for (const colorScheme of ['light', 'dark']) {
+      await page.emulateMedia({ colorScheme });
+      const place = `${width} px, ${colorScheme}: `;
+      found.push(...(await page.evaluate(find_layout_faults)).map((fault) => place + fault));
+      if (width === 390 || width === 1280) {
+        found.push(...(await find_violations(page)).map((fault) => place + fault));
+      }
+    }
+    // A cell that is cut shows its text to the pointer.
+    const cut = await page.$$eval('th, td, dd', (all) =>
+      all
+        .filter((one) => (one.scrollWidth > one.clientWidth || one.scrollHeight > one.clientHeight + 1) && one.title === '')
+        .map((one) => one.textContent),
+    );
+    found.push(...cut.map((text) => `${width} px: "${text}" is cut`));
+  }
+  await page.close();
+  assert.deepEqual(found, []);
 });

@@ -5,7 +5,7 @@ import { cpSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { open_browser, open_page } from './browser.mjs';
-import { check_every_tab } from './every_tab.mjs';
+import { find_faulty_cards, go_through } from './examine.mjs';
 import { kFolder, run_program } from './make_pages.mjs';
 
 const kScript = `</script><script>document.title='PWNED'</script><img src=x onerror="document.title='PWNED'">`;
@@ -26,7 +26,9 @@ after(() => browser.close());
 
 async function expect_inert(file) {
   const { page, expect_no_faults } = await open_page(browser, file);
-  await check_every_tab(page, async (tab) => {
+  const names = new Map();
+  await go_through(page, [1280], ['light'], async (tab) => {
+    assert.deepEqual(await find_faulty_cards(page, tab, names), [], tab);
     assert.equal(await page.locator('img').count(), 0, `markup came alive in tab ${tab}`);
     assert.equal(await page.locator('#page script').count(), 0);
   });

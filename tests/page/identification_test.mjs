@@ -4,8 +4,7 @@ import { spawnSync } from 'node:child_process';
 import { appendFileSync, cpSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { find_figure, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
-import { check_every_tab } from './every_tab.mjs';
+import { find_figure, open_browser, open_page, open_tab } from './browser.mjs';
 import { kFolder, run_program } from './make_pages.mjs';
 
 let browser;
@@ -26,17 +25,6 @@ async function open_motion() {
   await page.waitForFunction(() => document.querySelectorAll('[data-figure=efforts] .plot svg path').length > 5);
   return { page, expect_no_faults };
 }
-
-test('every tab of an identification has its figures, and no tab is of a design', async () => {
-  const { page, expect_no_faults } = await open();
-  assert.deepEqual(await list_tabs(page), ['overview', 'motion', 'parameters', 'search']);
-  const ids = await check_every_tab(page);
-  for (const id of ['doubts', 'fit-table', 'replay', 'efforts', 'parameters-table', 'intervals', 'fitness']) {
-    assert.ok(ids.includes(id), `${id} is missing; there are ${ids.join(', ')}`);
-  }
-  expect_no_faults();
-  await page.close();
-});
 
 test('the first screen has the doubts before the errors, and both as they were recorded', async () => {
   const { doubts, fitted, held_back } = found();

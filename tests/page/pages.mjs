@@ -1,12 +1,9 @@
-// The pages that several tests go through: those of runs, studies and a reproduction, the page of a
-// study under way, the data sheet of a run, and the site of the documentation.
+// The page of a study under way, for several tests.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { cpSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
-import { kFolder, run_program } from './make_pages.mjs';
-
-export const kReports = ['run', 'study', 'front', 'reproduction', 'function', 'own', 'identification', 'comparison', 'study-comparison'];
+import { kFolder } from './make_pages.mjs';
 
 // Starts `armwright watch` on a copy of the study that lacks a cell, so that the study is under way. Each test
 // gives a `name` of its own. Returns the address of the page and the function that ends the program.
@@ -31,12 +28,4 @@ export async function start_watch(name) {
       assert.equal(await ended, 0);
     },
   };
-}
-
-// Writes the data sheet of the run and returns its file.
-export function make_datasheet(name) {
-  const out = join(kFolder, name);
-  rmSync(out, { recursive: true, force: true });
-  run_program('export', join(kFolder, 'run'), '--format', 'datasheet', '--out', out);
-  return join(out, 'datasheet.html');
 }

@@ -2,37 +2,13 @@ import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { open_browser, open_page } from './browser.mjs';
-import { check_every_tab } from './every_tab.mjs';
 import { kFolder } from './make_pages.mjs';
-
-// The figures of the thesis that show results; its others are drawings and screen shots.
-const kThesis = [
-  ...['5.5', '5.6', '5.7', '5.8', '5.9', '5.10', '5.11', '5.12', '6.4', '6.5', '6.6', '6.7', '6.8', '6.9'],
-  ...['6.10', '6.11', '6.12', '6.13', '6.15', '6.16'],
-];
 
 let browser;
 before(async () => {
   browser = await open_browser();
 });
 after(() => browser.close());
-
-test('every figure of the thesis has its counterpart', async () => {
-  const { page, expect_no_faults } = await open_page(browser, join(kFolder, 'reproduction.html'));
-  const named = new Set();
-  await check_every_tab(page, async () => {
-    for (const text of await page.$$eval('.thesis', (all) => all.map((one) => one.textContent))) {
-      for (const number of text.match(/\d+\.\d+/g) ?? []) {
-        named.add(number);
-      }
-    }
-  });
-  for (const figure of kThesis) {
-    assert.ok(named.has(figure), `Fig. ${figure} has none; there are ${[...named].join(', ')}`);
-  }
-  expect_no_faults();
-  await page.close();
-});
 
 test('the first screen has the sentence, and the reasons of differences', async () => {
   const { page, expect_no_faults } = await open_page(browser, join(kFolder, 'reproduction.html'));

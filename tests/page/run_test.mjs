@@ -2,14 +2,9 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { find_figure, list_points, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
-import { check_every_tab } from './every_tab.mjs';
+import { draw_frames, find_figure, list_points, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
+import { settle } from './examine.mjs';
 import { kFolder, run_program } from './make_pages.mjs';
-
-const kFigures = [
-  ...['fitness', 'variables', 'distance-response', 'momentary-error', 'signals-distance', 'signals-speed', 'signals-acceleration'],
-  ...['speed-reduction', 'test-case', 'speed-sweep', 'joint-angles', 'joint-errors', 'joint-torques', 'test-errors', 'design-table'],
-];
 
 let browser;
 before(async () => {
@@ -32,16 +27,6 @@ async function open_replay(page) {
 }
 
 const get_state = (page) => page.evaluate(() => ({ ...window.armwright_replay.state }));
-
-test('every tab of a run has its figures', async () => {
-  const { page, expect_no_faults } = await open_run();
-  const found = await check_every_tab(page);
-  for (const figure of kFigures) {
-    assert.ok(found.includes(figure), `${figure} is missing; there are ${found.join(', ')}`);
-  }
-  expect_no_faults();
-  await page.close();
-});
 
 test('the first screen of a run has its headlines and the health of the winner', async () => {
   const result = JSON.parse(readFileSync(join(kFolder, 'run', 'result.json'), 'utf8'));
@@ -88,18 +73,6 @@ test('the first screen of a run has its headlines and the health of the winner',
   }
   expect_no_faults();
   await page.close();
-});
-
-test('a run of several objectives and one of a function have pages, too', async () => {
-  for (const name of ['front', 'function']) {
-    const { page, expect_no_faults } = await open_run(name);
-    const found = await check_every_tab(page);
-    assert.ok(found.includes('fitness'), found.join(', '));
-    assert.equal(found.includes('front'), name === 'front');
-    assert.equal(found.includes('joint-torques'), name === 'front');
-    expect_no_faults();
-    await page.close();
-  }
 });
 
 test('a click on the front picks a design that can be saved and evaluated', async () => {
@@ -184,7 +157,7 @@ test('the replay plays, is scrubbed, and shows the robot', async () => {
   await page.waitForFunction(() => window.armwright_replay.state.time_s > 0.3);
   await page.locator('.replay').getByRole('button', { name: /pause/i }).click();
   const paused = await get_state(page);
-  await page.waitForTimeout(200);
+  await draw_frames(page, 10); // while it plays, each frame shows a later step
   assert.equal((await get_state(page)).step, paused.step);
 
   // Pixels of the robot: many that are not the background's colour.
@@ -272,7 +245,7 @@ test('the arm is seen from above, and its links have the colours of torques or o
   // A change asks for the next frame, so the picture has followed it after that frame.
   const draw = async (change) => {
     await change();
-    await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+    await draw_frames(page, 2);
     return count_orange();
   };
   const from_side = await draw(() => page.getByRole('button', { name: 'Side' }).click());
@@ -296,9 +269,7 @@ async function open_motion(width = 1280) {
   await page.setViewportSize({ width, height: 900 });
   await open_replay(page);
   await page.waitForFunction(() => window.armwright_replay?.state.frames > 0);
-  for (const id of ['joint-angles', 'joint-torques', 'momentary-error']) {
-    await page.waitForFunction((name) => document.querySelectorAll(`[data-figure=${name}] .plot svg path`).length > 5, id);
-  }
+  await settle(page);
   return { page, expect_no_faults };
 }
 
@@ -545,28 +516,34 @@ test('a series is switched off and on, and shown alone', async () => {
   await open_tab(page, 'training');
   const card = await find_figure(page, 'fitness');
   const count = () => card.evaluate((element) => element.querySelectorAll('.plot svg path').length);
+  // The chart follows a click in one of the next frames.
+  const wait_for_paths = async (least, most, what) => {
+    await page
+      .waitForFunction(
+        ([low, high]) => {
+          const { length } = document.querySelectorAll('[data-figure=fitness] .plot svg path');
+          return length >= low && length <= high;
+        },
+        [least, most],
+      )
+      .catch(async () => assert.fail(`${await count()} paths ${what}, not ${least} to ${most}`));
+    return count();
+  };
   await page.waitForFunction(() => document.querySelectorAll('[data-figure=fitness] .plot svg path').length > 5);
   const all = await count();
   const entry = card.locator('.plot svg text', { hasText: /average|mean/i }).first();
   await entry.click();
-  await page.waitForTimeout(100);
-  const fewer = await count();
-  assert.ok(fewer < all, `${fewer} paths after ${all}`);
+  const fewer = await wait_for_paths(1, all - 1, 'without a series');
   await entry.click();
-  await page.waitForTimeout(100);
-  assert.equal(await count(), all);
+  await wait_for_paths(all, all, 'with all series');
 
   // A double click, or a click with Alt, shows a series alone, and again shows all of them.
   await entry.dblclick();
-  await page.waitForTimeout(100);
-  const alone = await count();
-  assert.ok(alone < fewer, `${alone} paths alone, ${fewer} without it`);
+  const alone = await wait_for_paths(1, fewer - 1, 'of a series alone');
   await entry.dblclick();
-  await page.waitForTimeout(100);
-  assert.equal(await count(), all);
+  await wait_for_paths(all, all, 'with all series after a double click');
   await entry.click({ modifiers: ['Alt'] });
-  await page.waitForTimeout(100);
-  assert.equal(await count(), alone);
+  await wait_for_paths(alone, alone, 'of a series alone after a click with Alt');
   await entry.hover();
   await page.waitForFunction(() =>
     /Double-click or Alt-click/.test(document.querySelector('[data-figure=fitness] .tip')?.textContent ?? ''),

@@ -8,6 +8,7 @@ import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { build_site } from '../../web/site/build.mjs';
 import { open_browser } from './browser.mjs';
+import { find_motion, find_violations, walk } from './examine.mjs';
 
 const kRoot = new URL('../..', import.meta.url).pathname;
 const kPhone = { width: 360, height: 740 };
@@ -204,4 +205,55 @@ test('on paper there is the text alone, dark on white whatever the theme', async
   assert.ok(await page.locator('article').isVisible());
   await page.emulateMedia({ media: 'screen', colorScheme: 'light' });
   assert.deepEqual(faults, []);
+});
+
+// The first page, tables, sessions, code of several languages, pictures, long tables, and the search: some on a screen,
+// some on a telephone, some in either theme.
+const kSizes = [kDesktop, { width: 390, height: 844 }];
+for (const [i, place] of [
+  'index.html',
+  'tutorials/tune.html',
+  'tutorials/add-an-optimizer.html',
+  'report.html',
+  'reliability.html',
+  'reference/configuration.html',
+  'optimizers/index.html',
+  'optimizers/cmaes.html',
+  'changelog.html',
+  'verify.html',
+].entries()) {
+  test(`axe-core finds nothing on the site's page ${place}`, async () => {
+    await page.setViewportSize(kSizes[i % 2]);
+    await page.emulateMedia({ colorScheme: i % 4 < 2 ? 'light' : 'dark', reducedMotion: 'reduce' });
+    await page.goto(address(place));
+    assert.deepEqual(await find_violations(page), []);
+  });
+}
+
+test('axe-core finds nothing while the search is open', async () => {
+  await page.setViewportSize(kDesktop);
+  for (const colorScheme of ['dark', 'light']) {
+    await page.emulateMedia({ colorScheme });
+    await page.goto(address('tutorials/compare.html'));
+    await page.fill('#search', 'tune a robot');
+    await page.waitForSelector('#found a');
+    assert.deepEqual(await find_violations(page), []);
+    await page.setViewportSize(kSizes[1]);
+  }
+});
+
+test('the keyboard alone in the site', async () => {
+  await page.goto(address('tutorials/add-an-optimizer.html'));
+  const stops = await walk(page);
+  assert.match(stops[0], /"To the text"/);
+  assert.ok(
+    stops.some((name) => name.startsWith('pre')),
+    'a box of code is cut, and the keyboard does not reach it',
+  );
+});
+
+test('nothing in the site moves by itself for a reader who prefers less motion', async () => {
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await page.goto(address('report.html'));
+  assert.deepEqual(await page.evaluate(find_motion), []);
 });

@@ -4,7 +4,7 @@ import { cpSync, existsSync, mkdirSync, renameSync, rmSync, writeFileSync } from
 import http from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { open_browser, open_page } from './browser.mjs';
+import { draw_frames, open_browser, open_page } from './browser.mjs';
 import { kFolder } from './make_pages.mjs';
 import { start_watch } from './pages.mjs';
 
@@ -161,7 +161,7 @@ test('an update of the progress touches nothing else', async (t) => {
     box.querySelector('th button').focus({ preventScroll: true });
     window.kept = { box, focus: document.activeElement, changed: [] };
   });
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await draw_frames(page, 2);
   await page.evaluate(() => {
     new MutationObserver((records) => {
       for (const { target } of records) {
