@@ -225,16 +225,18 @@ class SegmentKernel {
   PackList<V, Chain::kJoints> effort_, acceleration_, way_;
 };
 
-// With the address sanitizer, straight-line code becomes so long that the compiler needs half an
-// hour for it. Then chains of known lengths use the code for any length: the same code, with loops.
-#ifdef __SANITIZE_ADDRESS__
-inline constexpr bool kHasKnownLengths = false;
-#else
+// Straight-line code for each known length runs 1.3 times as fast as the code for any length, which
+// is the same code with loops, but takes the compiler four times as long. So only the instruction
+// sets of today's processors have it. The address sanitizer would need half an hour for it.
+#if defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__)
 inline constexpr bool kHasKnownLengths = true;
+#else
+inline constexpr bool kHasKnownLengths = false;
 #endif
 using AnyChain = ChainShape<0, kAnyShape, true>;
+using AnyTurningChain = ChainShape<0, kAnyShape, false>;  // the same bits as known lengths
 using Palletiser =
-    std::conditional_t<kHasKnownLengths, ChainShape<4, kPalletiser, false>, AnyChain>;
+    std::conditional_t<kHasKnownLengths, ChainShape<4, kPalletiser, false>, AnyTurningChain>;
 
 template <class T>
 bool is_palletiser(const SegmentCall<T>& call) {
@@ -276,9 +278,11 @@ void run_segment(SegmentCall<typename V::Scalar>& call) {
                                : SegmentKernel<V, AnyChain, PlantKind::perturbed>::run(call);
   }
   constexpr int kLongestKnown = 8;
-  if constexpr (kHasKnownLengths) {
-    if (!call.prismatic && call.joints <= kLongestKnown) {
+  if (!call.prismatic && call.joints <= kLongestKnown) {
+    if constexpr (kHasKnownLengths) {
       return run_known_length<V>(call);
+    } else {
+      return SegmentKernel<V, AnyTurningChain>::run(call);
     }
   }
   SegmentKernel<V, AnyChain>::run(call);
@@ -296,6 +300,8 @@ void run_plant_kind(SegmentCall<typename V::Scalar>& call) {
     if (!call.prismatic && call.joints == 7) {
       return SegmentKernel<V, ChainShape<7, kAnyShape, false>, kKind>::run(call);
     }
+  } else if (!call.prismatic && (call.joints == 6 || call.joints == 7)) {
+    return SegmentKernel<V, AnyTurningChain, kKind>::run(call);
   }
   SegmentKernel<V, AnyChain, kKind>::run(call);
 }
