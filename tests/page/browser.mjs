@@ -1,8 +1,10 @@
 // Opens pages as a reader would: in Debian's Chromium, from disk. Whatever the page writes to the
 // console as an error, throws, or asks of the network is remembered and fails the test at its end.
 import assert from 'node:assert/strict';
-import { existsSync } from 'node:fs';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 const { chromium } = createRequire(new URL('../../web/package.json', import.meta.url))('playwright-core');
@@ -17,33 +19,25 @@ const kFlags = [
   '--no-sandbox',
 ];
 
-const kLongest_ms = 120_000; // for what takes a second on a quiet machine
-
-let launched; // by the first test file of this process; the files share it
-let users = 0;
-
-// Returns a context of its own in this process's browser: pages of other contexts do not share what it stores, such as
-// the theme. `options` are Playwright's for the context: with reducedMotion no animation takes processor time.
+// `options` are Playwright's for the context: with reducedMotion no animation takes processor time.
 export async function open_browser(options = {}) {
   assert.ok(existsSync(kProgram), `${kProgram} is missing: install the Debian package chromium (scripts/setup --tests does)`);
-  ++users;
-  launched ??= chromium.launch({ executablePath: kProgram, headless: true, args: kFlags });
-  const browser = await launched;
-  const context = await browser.newContext({
+  const profile = mkdtempSync(join(tmpdir(), 'armwright-chromium-'));
+  const context = await chromium.launchPersistentContext(profile, {
+    executablePath: kProgram,
+    headless: true,
+    args: kFlags,
     viewport: { width: 1280, height: 900 },
     colorScheme: 'light',
     acceptDownloads: true,
     ...options,
   });
-  context.setDefaultTimeout(kLongest_ms);
+  context.setDefaultTimeout(120_000); // for what takes a second on a quiet machine
   return {
     context,
     async close() {
       await context.close();
-      if (--users === 0) {
-        launched = undefined;
-        await browser.close();
-      }
+      rmSync(profile, { recursive: true, force: true });
     },
   };
 }

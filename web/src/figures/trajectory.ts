@@ -35,7 +35,7 @@ function find_frame(one: ReplayCase): Frame {
   });
   let half = 0.01;
   const centre = low.map((value, axis) => {
-    half = Math.max(half, 0.55 * (high[axis] - value));
+    half = Math.max(half, 0.6 * (high[axis] - value)); // the numbers of the points are above them
     return (value + high[axis]) / 2;
   });
   // Round ends make round ticks.
