@@ -1,7 +1,7 @@
 // Makes, with the program itself, the pages that the tests open. Usage: node make_pages.mjs FOLDER
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
-import { mkdirSync, rmSync } from 'node:fs';
+import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 export const kFolder = process.env.ARMWRIGHT_PAGES ?? process.argv[2];
@@ -91,11 +91,21 @@ function make_comparisons() {
   run_program('report', join(kFolder, 'study'), study, '--out', join(kFolder, 'study-comparison.html'), '--quiet');
 }
 
+// The page needs the runs of the thesis, and not their results: 20 generations are enough.
 function make_reproduction() {
   const folder = join(kFolder, 'reproduction');
+  const configs = join(kFolder, 'configs');
+  cpSync(new URL('../../configs', import.meta.url), configs, { recursive: true });
+  for (const name of ['initial', 'initial-0cm', 'initial-45cm', '_q2', 'q2-e1', 'q2-e2']) {
+    const file = join(configs, 'problems', `${name}.toml`);
+    const text = readFileSync(file, 'utf8');
+    const shorter = text.replace(/^budget = \d+/m, 'budget = 700');
+    assert.notEqual(shorter, text, file);
+    writeFileSync(file, shorter);
+  }
   // Above the speed that it was tuned for the design diverges in some cases, which is a result (code 3).
   const flags = ['reproduce', '--engine', 'articulated', '--cases', '20', '--out', folder, '--quiet'];
-  const { status, stderr } = spawnSync(kProgram, flags, { encoding: 'utf8' });
+  const { status, stderr } = spawnSync(kProgram, flags, { encoding: 'utf8', env: { ...process.env, ARMWRIGHT_CONFIGS: configs } });
   assert.equal(status, 3, stderr);
   run_program('report', folder, '--out', join(kFolder, 'reproduction.html'), '--quiet');
 }
