@@ -14,3 +14,12 @@ Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>::compute(const Eigen::EigenBase<E
 template Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>&
 Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>::compute(const Eigen::EigenBase<Eigen::MatrixXd>&,
                                                         int);
+
+namespace armwright {
+
+Eigen::VectorXd solve(const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>& factor,
+                      const Eigen::VectorXd& right) {
+  return factor.solve(right);
+}
+
+}  // namespace armwright

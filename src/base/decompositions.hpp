@@ -24,3 +24,11 @@ Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>::compute(const Eigen::EigenBase<E
 extern template Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>&
 Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>::compute(const Eigen::EigenBase<Eigen::MatrixXd>&,
                                                         int);
+
+namespace armwright {
+
+// Returns factor.solve(right).
+Eigen::VectorXd solve(const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>& factor,
+                      const Eigen::VectorXd& right);
+
+}  // namespace armwright

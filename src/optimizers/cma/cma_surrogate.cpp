@@ -68,7 +68,7 @@ Eigen::VectorXd solve_least_squares(Eigen::MatrixXd& a, const Eigen::VectorXd& b
       return qr.solve(b).cwiseQuotient(lengths);
     }
   }
-  return a.completeOrthogonalDecomposition().solve(b).cwiseQuotient(lengths);
+  return solve(a.completeOrthogonalDecomposition(), b).cwiseQuotient(lengths);
 }
 
 }  // namespace

@@ -225,7 +225,7 @@ bool ResidualModel::adds_direction(const VectorXd& direction) const {
     return true;
   }
   const Eigen::CompleteOrthogonalDecomposition<MatrixXd> factor(directions_.transpose());
-  const VectorXd rest = direction - directions_.transpose() * factor.solve(direction);
+  const VectorXd rest = direction - directions_.transpose() * solve(factor, direction);
   return rest.norm() >= kLeastShare * direction.norm();
 }
 

@@ -31,7 +31,7 @@ constexpr double kShrinking = 0.01;
 constexpr double kSmallest = 0.5;
 // The condition number of a motion that does not tell a parameter at all.
 constexpr double kWorstLog10 = 16;
-constexpr double kPenalty = 1e3;
+constexpr double kWorstObjective = 1e3;
 
 double find_share(const Eigen::MatrixXd& values, Index joint, double middle, double limit) {
   return (values.col(joint).array() - middle).abs().maxCoeff() / limit;
@@ -434,7 +434,7 @@ Evaluation ExcitationProblem::aggregate(std::span<const double> /*x*/,
 }
 
 std::vector<double> ExcitationProblem::penalty_objectives() const {
-  return {kPenalty};
+  return {kWorstObjective};
 }
 
 CaseRecord ExcitationProblem::record_case(std::span<const double> x, const CaseBlock& /*block*/,

@@ -11,7 +11,7 @@ namespace armwright {
 namespace {
 
 using Eigen::Index;
-using Kind = PlantParameter::Kind;
+using ParameterKind = PlantParameter::Kind;
 
 // The boxes end where one parameter would explain this many times the joint's largest effort.
 constexpr double kBoxShare = 3;
@@ -49,31 +49,31 @@ std::pair<double, double> find_box(const RobotModel& robot, const PlantParameter
   const double effort = kBoxShare * largest.effort;
   const double tiny = 1e-9;
   switch (parameter.kind) {
-    case Kind::viscous:
+    case ParameterKind::viscous:
       return {0, effort / std::max(largest.rate, tiny)};
-    case Kind::coulomb:
-    case Kind::breakaway:
+    case ParameterKind::coulomb:
+    case ParameterKind::breakaway:
       return {0, effort};
-    case Kind::offset:
+    case ParameterKind::offset:
       return {-effort, effort};
-    case Kind::stribeck_rate:
+    case ParameterKind::stribeck_rate:
       return {kLeastRates * robot.joints[parameter.joint].plant.transition_rate,
               std::max(largest.rate,
                        2 * kLeastRates * robot.joints[parameter.joint].plant.transition_rate)};
-    case Kind::armature:
+    case ParameterKind::armature:
       return {0, effort / std::max(largest.acceleration, tiny)};
-    case Kind::payload:
+    case ParameterKind::payload:
       return parameter.part == 0 ? std::pair(0.0, std::max(10.0, calc_moving_mass_kg(robot)))
                                  : std::pair(-kReach_m, kReach_m);
-    case Kind::counterbalance:
+    case ParameterKind::counterbalance:
       return parameter.part == 0 ? std::pair(1e-3, kMostBalance) : std::pair(-0.9, 0.9);
-    case Kind::stiffness:
+    case ParameterKind::stiffness:
       return {std::max(1e-3, largest.effort / kLongestDeflection), kStiffest};
-    case Kind::encoder_offset:
+    case ParameterKind::encoder_offset:
       return {-kLongestDeflection, kLongestDeflection};
-    case Kind::delay:
+    case ParameterKind::delay:
       return {-kMostDelay_s, kMostDelay_s};
-    case Kind::inertia:
+    case ParameterKind::inertia:
       return {-kInertiaSpan, kInertiaSpan};  // around the robot's own value
   }
   return {0, 0};
@@ -82,14 +82,14 @@ std::pair<double, double> find_box(const RobotModel& robot, const PlantParameter
 // Returns whether efforts are linear in the parameter.
 bool is_linear(const PlantParameter& parameter) {
   switch (parameter.kind) {
-    case Kind::stribeck_rate:
-    case Kind::stiffness:
-    case Kind::encoder_offset:
-    case Kind::delay:
-    case Kind::inertia:
-    case Kind::payload:  // its ten numbers are in its place
+    case ParameterKind::stribeck_rate:
+    case ParameterKind::stiffness:
+    case ParameterKind::encoder_offset:
+    case ParameterKind::delay:
+    case ParameterKind::inertia:
+    case ParameterKind::payload:  // its ten numbers are in its place
       return false;
-    case Kind::counterbalance:
+    case ParameterKind::counterbalance:
       return parameter.part == 0;
     default:
       return true;
@@ -105,7 +105,7 @@ Eigen::VectorXd solve_even(const Eigen::MatrixXd& normal, const Eigen::VectorXd&
   solver.setThreshold(1e-9);
   solver.compute(lengths.cwiseInverse().asDiagonal() * normal *
                  lengths.cwiseInverse().asDiagonal());
-  return solver.solve(right.cwiseQuotient(lengths)).cwiseQuotient(lengths);
+  return solve(solver, right.cwiseQuotient(lengths)).cwiseQuotient(lengths);
 }
 
 // Does the same within ranges. The number farthest beyond its range, in units of the range, is held
@@ -155,7 +155,7 @@ void set_payload_start(const RobotModel& robot, std::span<const PlantParameter> 
                                     ? Eigen::Vector3d(robot.tip_pose.inverse() * (moment / mass_kg))
                                     : Eigen::Vector3d::Zero();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (parameters[p].kind == Kind::payload) {
+    if (parameters[p].kind == ParameterKind::payload) {
       const int part = parameters[p].part;
       variables[p].start = move_into(variables[p], part == 0 ? mass_kg : com_m[part - 1]);
     }
@@ -166,7 +166,8 @@ void set_payload_start(const RobotModel& robot, std::span<const PlantParameter> 
 void set_stiffness_start(const IdentificationProblem& problem,
                          std::vector<DecisionVariable>& variables) {
   const auto& parameters = problem.parameters();
-  if (std::ranges::find(parameters, Kind::stiffness, &PlantParameter::kind) == parameters.end()) {
+  if (std::ranges::find(parameters, ParameterKind::stiffness, &PlantParameter::kind) ==
+      parameters.end()) {
     return;
   }
   const std::vector<double> x = list_starts(variables);
@@ -175,7 +176,7 @@ void set_stiffness_start(const IdentificationProblem& problem,
     efforts.push_back(motion.model.calc(x, false).link);
   }
   for (std::size_t p = 0; p < parameters.size(); ++p) {
-    if (parameters[p].kind != Kind::stiffness) {
+    if (parameters[p].kind != ParameterKind::stiffness) {
       continue;
     }
     const auto i = static_cast<Index>(parameters[p].joint);
@@ -205,13 +206,13 @@ std::vector<DecisionVariable> make_boxes(const RobotModel& robot,
   for (const PlantParameter& parameter : parameters) {
     auto [lower, upper] = find_box(robot, parameter, find_largest(motions, parameter.joint));
     const double own = get_parameter(robot, parameter);
-    if (parameter.kind == Kind::inertia) {
+    if (parameter.kind == ParameterKind::inertia) {
       const bool is_length = parameter.part > 3;
       const double scale = is_length ? std::max(std::abs(own), kReach_m / 2) : 1;
       lower = own + lower * scale;
       upper = own + upper * scale;
     }
-    if (parameter.kind == Kind::stiffness) {
+    if (parameter.kind == ParameterKind::stiffness) {
       upper = std::max(upper, 2 * lower);
     }
     variables.push_back(
@@ -220,7 +221,7 @@ std::vector<DecisionVariable> make_boxes(const RobotModel& robot,
          .lower = std::min(lower, own),
          .upper = std::max(upper, own),
          .start = own,
-         .scale = parameter.kind == Kind::stiffness ? Scale::logarithmic : Scale::linear});
+         .scale = parameter.kind == ParameterKind::stiffness ? Scale::logarithmic : Scale::linear});
     DecisionVariable& variable = variables.back();
     if (variable.scale == Scale::logarithmic) {
       variable.lower = lower;
@@ -236,21 +237,21 @@ Eigen::VectorXd list_priors(const RobotModel& robot, std::span<const PlantParame
     const double own = get_parameter(robot, parameters[p]);
     double& deviation = deviations[static_cast<Index>(p)];
     switch (parameters[p].kind) {
-      case Kind::armature:
+      case ParameterKind::armature:
         deviation = 0.3 * own;
         break;
-      case Kind::counterbalance:
+      case ParameterKind::counterbalance:
         deviation = 0.2;
         break;
-      case Kind::stribeck_rate:
+      case ParameterKind::stribeck_rate:
         deviation = own;
         break;
-      case Kind::payload:
+      case ParameterKind::payload:
         if (robot.payload && robot.payload->mass_kg > 0) {
           deviation = parameters[p].part == 0 ? 0.1 * own : kPayloadPlace_m;
         }
         break;
-      case Kind::inertia:
+      case ParameterKind::inertia:
         deviation = 0.3;
         break;
       default:
@@ -270,7 +271,7 @@ void set_linear_start(const IdentificationProblem& problem,
     if (is_linear(parameters[p])) {
       columns.push_back(static_cast<Index>(p));
     }
-    has_payload = has_payload || parameters[p].kind == Kind::payload;
+    has_payload = has_payload || parameters[p].kind == ParameterKind::payload;
   }
   const auto count = static_cast<Index>(columns.size()) + (has_payload ? kLinkNumbers : 0);
   if (count > 0) {

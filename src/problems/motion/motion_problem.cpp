@@ -18,14 +18,14 @@ using Eigen::Index;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The objectives of an evaluation without a number, in units of those at the start.
-constexpr double kPenalty = 1e3;
+constexpr double kPenaltyFactor = 1e3;
 // With this factor, a violation of one limit outweighs what a motion can gain by it: the duration falls
 // at most in proportion to a limit.
 constexpr double kViolation = 10;
 // Of the start's intervals, on the time that the joints' speed limits ask for.
 constexpr double kStartSlowness = 2;
 
-const char* get_length_unit(const Joint& joint) {
+const char* get_position_unit(const Joint& joint) {
   return joint.kind == JointKind::revolute ? "rad" : "m";
 }
 
@@ -139,7 +139,7 @@ MotionProblem::MotionProblem(MotionConfig config)
   description_.violation_scale =
       kViolation * std::max(std::abs(calc_scalar(description_, penalty_)), 1e-12);
   for (double& value : penalty_) {
-    value = kPenalty * std::max(std::abs(value), 1.0);
+    value = kPenaltyFactor * std::max(std::abs(value), 1.0);
   }
 }
 
@@ -194,7 +194,7 @@ void MotionProblem::make_variables(const Eigen::MatrixXd& start) {
       const double lower = has_range ? its.lower : -kTurn, upper = has_range ? its.upper : kTurn;
       variables.push_back(
           {.name = fmt::format("point_{}.{}", point + 1, its.name),
-           .unit = get_length_unit(its),
+           .unit = get_position_unit(its),
            .lower = lower,
            .upper = upper,
            .start = std::clamp(start(static_cast<Index>(joint), static_cast<Index>(point)), lower,
@@ -314,7 +314,7 @@ CaseRecord MotionProblem::record_case(std::span<const double> x, const CaseBlock
     const Joint& its = plan->robot->joints[joint];
     for (int order = 0; order < (is_line() ? 3 : 4); ++order) {  // the jerk of a line has no bound
       CaseRecord::Series series{{fmt::format("{} {}", its.name, kinds[order]),
-                                 fmt::format("{}{}", get_length_unit(its), per[order])},
+                                 fmt::format("{}{}", get_position_unit(its), per[order])},
                                 {}};
       for (const double t : plan->times_s) {
         plan->curve.calc(t, order, values);
