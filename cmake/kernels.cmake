@@ -19,9 +19,10 @@ foreach(level scalar sse2 avx2 avx512)
     list(APPEND flags ${instructions_${level}})
   endif()
   # Other flags, as -O2 and assertions in the preset ci, change which operations the compiler fuses, and so the last bits. Every Release
-  # build compiles the kernels with these flags, so CI tests the machine code that is shipped.
+  # build compiles the kernels with these flags, so CI tests the machine code that is shipped. So do Debug builds, whose tests would
+  # otherwise wait for the kernels.
   foreach(flag -O3 -DNDEBUG -U_GLIBCXX_ASSERTIONS)
-    list(APPEND flags $<$<CONFIG:Release>:${flag}>)
+    list(APPEND flags $<$<CONFIG:Release,Debug>:${flag}>)
   endforeach()
   # With sanitizers a compiler takes more than a minute per file. All levels are the same source, so only one of them has sanitizers,
   # and scripts/sanitize runs the tests with it.
