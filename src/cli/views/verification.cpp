@@ -254,7 +254,7 @@ std::string conclude(const std::string& design, std::span<const VerifyRow> rows)
   }
   add("Masses", masses, "with",
       [](const VerifySetting& s) { return fmt::format("{:+.0f} %", 100 * (s.mass_factor - 1)); });
-  add("Other plants", plants, "with", describe_plant);
+  add("Other plants", plants, "with", [](const VerifySetting& s) { return describe_plant(s); });
   if (const Counts counts = count_verdicts(mixed); counts.simulated > 0) {
     text += fmt::format(" If several of these change at once, it holds in {} of {} settings.",
                         counts.holding, counts.simulated);

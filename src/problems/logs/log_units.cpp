@@ -12,7 +12,7 @@ namespace {
 constexpr double kRadPerDeg = std::numbers::pi / 180;
 
 // Longer spellings stand before those that they end with.
-constexpr LogUnit kLogUnits[] = {
+constexpr LogUnit kKnownUnits[] = {
     {"rad_per_s", UnitKind::angle_rate, 1, "rad/s"},
     {"deg_per_s", UnitKind::angle_rate, kRadPerDeg, "deg/s"},
     {"mm_per_s", UnitKind::length_rate, 1e-3, "mm/s"},
@@ -49,7 +49,7 @@ std::string normalize_name(std::string_view name) {
 }
 
 std::span<const LogUnit> list_log_units() {
-  return kLogUnits;
+  return kKnownUnits;
 }
 
 const LogUnit* find_log_unit(std::string_view text) {
@@ -59,8 +59,8 @@ const LogUnit* find_log_unit(std::string_view text) {
     spelling =
         normalize_name(text.substr(0, slash)) + "_per_" + normalize_name(text.substr(slash + 1));
   }
-  const auto* found = std::ranges::find(kLogUnits, spelling, &LogUnit::spelling);
-  return found == std::end(kLogUnits) ? nullptr : found;
+  const auto* found = std::ranges::find(kKnownUnits, spelling, &LogUnit::spelling);
+  return found == std::end(kKnownUnits) ? nullptr : found;
 }
 
 UnitKind get_unit_kind(LogQuantity quantity, JointKind joint, bool is_motor) {
@@ -76,7 +76,7 @@ UnitKind get_unit_kind(LogQuantity quantity, JointKind joint, bool is_motor) {
 
 std::string list_unit_names(UnitKind kind) {
   std::vector<std::string> names;
-  for (const LogUnit& unit : kLogUnits) {
+  for (const LogUnit& unit : kKnownUnits) {
     if (unit.kind == kind && (names.empty() || names.back() != unit.name)) {
       names.emplace_back(unit.name);
     }

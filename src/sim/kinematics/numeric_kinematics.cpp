@@ -26,7 +26,7 @@ constexpr double kTolerance = 1e-10;
 // The same for a tool that four joints keep vertical: in files, angles such as 1.5708 rad for a
 // quarter of a turn leave it a little tilted.
 constexpr double kTiltedTolerance = 3e-5;
-constexpr double kDamping = 1e-9;  // the least mu^2, as a fraction of the largest (J^T J)_ii
+constexpr double kLeastDamping = 1e-9;  // the least mu^2, as a fraction of the largest (J^T J)_ii
 // Following a path starts near the solution and needs few iterations; a search needs more.
 constexpr int kFollowIterations = 30;
 constexpr double kFollowStep = 0.5;  // rad or m
@@ -171,7 +171,7 @@ void NumericKinematics::make_lane_chain(const RobotModel& robot) {
   chain.orientation = tool_.orientation;
   chain.arm_m = tool_.arm_m;
   chain.tolerance_m = tolerance_m_;
-  chain.least_damping = kDamping;
+  chain.least_damping = kLeastDamping;
   Vector3d::Map(chain.tool_axis) = tool_.axis;
   Matrix3d basis = Matrix3d::Identity();  // B of the joint before
   double base_turn_rad = 0;
@@ -406,7 +406,7 @@ bool NumericKinematics::improve(const Jacobian& jacobian, const Error6& error, c
                                 double longest_step, Vector& q) const {
   const Eigen::Index n = jacobian.cols();
   Square normal = jacobian.transpose() * jacobian;
-  const double damping = error.squaredNorm() + kDamping * normal.diagonal().maxCoeff();
+  const double damping = error.squaredNorm() + kLeastDamping * normal.diagonal().maxCoeff();
   normal.diagonal().array() += damping;
   Vector right = jacobian.transpose() * error + damping * wish;
   bool held[kMostJoints] = {};
