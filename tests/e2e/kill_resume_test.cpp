@@ -4,20 +4,21 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <chrono>
-#include <thread>
+#include <filesystem>
+#include <system_error>
 
 #include "base/bits.hpp"
 #include "base/random.hpp"
 #include "base/temporary_folder.hpp"
 #include "e2e/program.hpp"
 #include "study/journal/journal.hpp"
+#include "wait_until.hpp"
 
 namespace armwright {
 namespace {
 
 // 140 evaluations with either engine, for the fast one of a hundred cases each, or in races of 35
-// candidates on 3880 cases: long enough to be killed ten times.
+// candidates on 3880 cases.
 struct Setting {
   const char* name;
   const char* engine;
@@ -63,6 +64,13 @@ void expect_same_run(const std::filesystem::path& a, const std::filesystem::path
   }
 }
 
+// Returns 0 if the file is not there.
+std::uintmax_t get_size(const std::filesystem::path& file) {
+  std::error_code missing;
+  const std::uintmax_t size = std::filesystem::file_size(file, missing);
+  return missing ? 0 : size;
+}
+
 class KillAndResume : public testing::TestWithParam<Setting> {};
 
 TEST_P(KillAndResume, TenKillsAndAnyNumberOfThreadsChangeNothing) {
@@ -74,16 +82,17 @@ TEST_P(KillAndResume, TenKillsAndAnyNumberOfThreadsChangeNothing) {
   ASSERT_EQ(run_program(folder.path(), make("two", "2")).exit_code, 0);
   expect_same_run(folder / "one", folder / "two");
 
+  // Each life writes a random part of the journal, on average a thirtieth.
+  const auto whole = static_cast<double>(get_size(folder / "one" / "journal"));
+  const std::filesystem::path journal = folder / "killed" / "journal";
   RandomStream random("test/kill-and-resume", 1);
-  int kills = 0;
-  while (kills < 10) {
+  for (int kills = 0; kills < 10; ++kills) {
+    const double enough = static_cast<double>(get_size(journal)) + random.uniform(0, whole / 15);
     Program program(folder.path(), make("killed", kills % 2 == 0 ? "2" : "1"));
-    const auto wait_ms = static_cast<long>(random.uniform(20, 110));
-    std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+    ASSERT_TRUE(wait_until([&] { return static_cast<double>(get_size(journal)) >= enough; }));
     ASSERT_TRUE(program.is_running()) << "the run ended before it could be killed ten times";
     program.send(SIGKILL);
     EXPECT_EQ(program.wait().exit_code, -SIGKILL);
-    ++kills;
   }
   const Outcome last = run_program(folder.path(), make("killed", "2"));
   EXPECT_EQ(last.exit_code, 0) << last.err;

@@ -198,7 +198,7 @@ TEST_F(Disk, FullAtEveryPageAndThenWithRoomAgain) {
     std::filesystem::remove_all(folder_ / "disk/run");
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(full, 5);
+  EXPECT_GT(full, sample_or_all(5, 10));
 }
 
 TEST_F(Disk, AComparisonOnOneThatFails) {
