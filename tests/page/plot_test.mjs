@@ -44,6 +44,9 @@ test('choices change the figure, and wrong ones are refused with what there is',
   const [, choice, first, second] = list.match(/^joint-torques .*?(\w[\w-]*)=([^|;\s]+)\|([^|;\s]+)/m);
   const draw = (value) => run_program('plot', page, '--figure', 'joint-torques', '--choose', `${choice}=${value}`, '--out', '-');
   assert.notEqual(draw(first), draw(second));
+  // Equal numbers keep their order: many variables have the importance 0.
+  const draw_importance = () => run_program('plot', page, '--figure', 'importance-run', '--out', '-');
+  assert.equal(draw_importance(), draw_importance());
 
   const wrong = fail_program('plot', page, '--figure', 'joint-torques', '--choose', `${choice}=nonsense`, '--out', '-');
   assert.equal(wrong.code, 2);

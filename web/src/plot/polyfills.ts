@@ -7,6 +7,7 @@ import 'core-js/es/array/flat';
 import 'core-js/es/array/flat-map';
 import 'core-js/es/array/from';
 import 'core-js/es/array/includes';
+import 'core-js/es/array/sort'; // Duktape does not keep the order of equal items
 import 'core-js/es/map';
 import 'core-js/es/math';
 import 'core-js/es/object/entries';
