@@ -43,12 +43,6 @@ class CliOptimize : public testing::Test {
   const std::vector<std::string> sphere_ = {"optimize", "sphere", "--budget", "300"};
 };
 
-std::vector<std::string> operator+(std::vector<std::string> words,
-                                   const std::vector<std::string>& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
 TEST_F(CliOptimize, MakesARunOnceAndFindsItAgain) {
   const Outcome first = run(sphere_);
   ASSERT_EQ(first.exit_code, 0) << first.err;

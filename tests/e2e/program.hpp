@@ -72,4 +72,11 @@ std::string read_with(const std::string& reader, const std::filesystem::path& fo
 // What a comparison has come to: its tables, result and verdict, by the names of their files.
 std::map<std::string, std::string> read_study(const std::filesystem::path& study);
 
+// Returns the words of a command, followed by more words.
+inline std::vector<std::string> operator+(std::vector<std::string> words,
+                                          const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 }  // namespace armwright

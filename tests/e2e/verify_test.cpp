@@ -161,12 +161,6 @@ const std::vector<std::string> kElasticArm7 = {"start",
                                                "--set",
                                                "robot.elastic_hz=15"};
 
-std::vector<std::string> operator+(std::vector<std::string> some,
-                                   const std::vector<std::string>& more) {
-  some.insert(some.end(), more.begin(), more.end());
-  return some;
-}
-
 // Its loads are shares of its mass, and a setting that cannot be simulated costs a row and not the
 // command, also if the user named the preset.
 TEST_F(Verify, EndsForEveryRobotAndSaysWhatCouldNotBeSimulated) {
