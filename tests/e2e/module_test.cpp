@@ -113,7 +113,8 @@ TEST_F(ModuleLoading, AMissingOneIsNamedAndNothingElseIsTaken) {
                     Not(HasSubstr(std::string("file=") + kModule)), Not(HasSubstr("libpagmo"))));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "run"));
   EXPECT_EQ(run_copy({"list", "optimizers"}).exit_code, 0);
-  EXPECT_THAT(run_copy({"list", "optimizers", "pagmo:de"}).out, HasSubstr("is missing"));
+  EXPECT_THAT(run_copy({"list", "optimizers", "pagmo:de"}).out,
+              HasSubstr("Not available  its module"));
   EXPECT_THAT(run_copy({"doctor", "--json"}).out, HasSubstr("is missing"));
 }
 
