@@ -244,6 +244,8 @@ void report_no_memory() {
   [[maybe_unused]] const ssize_t put = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
 }
 
+constexpr std::size_t kPage_bytes = 4096;
+
 // What ends the program by default: it prints the exception and aborts.
 std::terminate_handler g_end_of_library = nullptr;
 
@@ -258,6 +260,9 @@ std::terminate_handler g_end_of_library = nullptr;
       ::_exit(exit_code::kIo);
     } catch (...) {
     }
+  } else if (std::malloc(kPage_bytes) == nullptr) {  // not even an exception can be made
+    report_no_memory();
+    ::_exit(exit_code::kIo);
   }
   g_end_of_library();
   std::abort();
