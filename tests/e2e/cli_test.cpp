@@ -13,6 +13,7 @@
 namespace armwright {
 namespace {
 
+using Words = std::vector<std::string>;
 using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -376,6 +377,17 @@ TEST_F(Cli, SweepsTheSpeed) {
   EXPECT_THAT(run({"sweep", "q4-speed", "--values", "0.5,1.5", "--cases", "2"}).out,
               AllOf(HasSubstr("task.speed_m_per_s"), HasSubstr("#")));
   expect_refused({"sweep", "q4-speed", "--values", "0.5,-1"}, 2, {"task.speed_m_per_s=-1"});
+}
+
+// A design for one step per control period diverges with twenty.
+TEST_F(Cli, ASweepInWhichOnlyTheFirstValueFailsHasFailed) {
+  const Words sweep = {
+      "sweep",   "q2-e6", "--design", "table-a10",  "--parameter", "physics.substeps",
+      "--cases", "5",     "--engine", "articulated"};
+  const Outcome outcome = run(sweep + Words{"--values", "20,1"});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
+  EXPECT_THAT(outcome.err, HasSubstr("physics.substeps=20"));
+  EXPECT_EQ(run(sweep + Words{"--values", "1"}).exit_code, 0);
 }
 
 TEST_F(Cli, AFullDiskBelowStdoutIsSaid) {
