@@ -234,9 +234,8 @@ inline constexpr bool kHasKnownLengths = true;
 inline constexpr bool kHasKnownLengths = false;
 #endif
 using AnyChain = ChainShape<0, kAnyShape, true>;
-using AnyTurningChain = ChainShape<0, kAnyShape, false>;  // the same bits as known lengths
 using Palletiser =
-    std::conditional_t<kHasKnownLengths, ChainShape<4, kPalletiser, false>, AnyTurningChain>;
+    std::conditional_t<kHasKnownLengths, ChainShape<4, kPalletiser, false>, AnyChain>;
 
 template <class T>
 bool is_palletiser(const SegmentCall<T>& call) {
@@ -278,11 +277,9 @@ void run_segment(SegmentCall<typename V::Scalar>& call) {
                                : SegmentKernel<V, AnyChain, PlantKind::perturbed>::run(call);
   }
   constexpr int kLongestKnown = 8;
-  if (!call.prismatic && call.joints <= kLongestKnown) {
-    if constexpr (kHasKnownLengths) {
+  if constexpr (kHasKnownLengths) {
+    if (!call.prismatic && call.joints <= kLongestKnown) {
       return run_known_length<V>(call);
-    } else {
-      return SegmentKernel<V, AnyTurningChain>::run(call);
     }
   }
   SegmentKernel<V, AnyChain>::run(call);
@@ -300,8 +297,6 @@ void run_plant_kind(SegmentCall<typename V::Scalar>& call) {
     if (!call.prismatic && call.joints == 7) {
       return SegmentKernel<V, ChainShape<7, kAnyShape, false>, kKind>::run(call);
     }
-  } else if (!call.prismatic && (call.joints == 6 || call.joints == 7)) {
-    return SegmentKernel<V, AnyTurningChain, kKind>::run(call);
   }
   SegmentKernel<V, AnyChain, kKind>::run(call);
 }
