@@ -441,6 +441,11 @@ void LaneBlock<T>::read_records(std::size_t slot, const Segment& segment, int st
     return;  // only another lane needs the records
   }
   TrackingResult& result = results_[job];
+  const std::size_t before = result.joint_positions.size();
+  if (recording.motion) {
+    result.joint_positions.resize(before + static_cast<std::size_t>(steps) * joints_);
+  }
+  double* position = result.joint_positions.data() + before;
   for (int step = 0; step < steps; ++step) {
     const T* numbers =
         records_.data() + static_cast<std::size_t>(step) * record_size_ + slot % lanes();
@@ -451,7 +456,7 @@ void LaneBlock<T>::read_records(std::size_t slot, const Segment& segment, int st
     if (recording.motion) {
       result.tips_m.push_back(tip);
       for (std::size_t i = 0; i < joints_; ++i) {
-        result.joint_positions.push_back(get(i));
+        *position++ = get(i);
       }
     }
     if (!recording.error_series && !recording.trajectory) {
