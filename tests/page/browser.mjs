@@ -101,6 +101,14 @@ export async function find_figure(page, id) {
   return card;
 }
 
+// Clicks in a figure's chart at these shares of its width and height, as soon as its place no longer changes. Returns the place.
+export async function click_plot(card, across, down) {
+  const plot = card.locator('.plot');
+  const { width, height } = await plot.boundingBox();
+  await plot.click({ position: { x: width * across, y: height * down } });
+  return plot.boundingBox();
+}
+
 // Returns the centres of the small shapes of a figure's chart, such as its points, in pixels of the screen.
 export async function list_points(card) {
   return card.locator('.plot svg path').evaluateAll((shapes) =>

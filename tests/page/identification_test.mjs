@@ -4,7 +4,7 @@ import { spawnSync } from 'node:child_process';
 import { appendFileSync, cpSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { find_figure, open_browser, open_page, open_tab } from './browser.mjs';
+import { click_plot, find_figure, open_browser, open_page, open_tab } from './browser.mjs';
 import { kFolder, run_program } from './make_pages.mjs';
 
 let browser;
@@ -60,8 +60,7 @@ test('the arm moves as it was recorded, with the clock of the torques', async ()
   const { page, expect_no_faults } = await open_motion();
   const motion = found().motions[1]; // the log that was held back
   const card = await find_figure(page, 'efforts');
-  const box = await card.locator('.plot').boundingBox();
-  await page.mouse.click(box.x + box.width * 0.6, box.y + box.height * 0.3);
+  const box = await click_plot(card, 0.6, 0.3);
   const state = await get_state(page);
   assert.equal(state.case, 'log-2');
   assert.ok(state.time_s > 1, `the time is ${state.time_s} s`);

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { draw_frames, find_figure, list_points, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
+import { click_plot, draw_frames, find_figure, list_points, list_tabs, open_browser, open_page, open_tab } from './browser.mjs';
 import { settle } from './examine.mjs';
 import { kFolder, run_program } from './make_pages.mjs';
 
@@ -280,8 +280,7 @@ const get_readings = (page, id) =>
 test('the replay and the plots over time share their cursor', async () => {
   const { page, expect_no_faults } = await open_motion();
   const card = await find_figure(page, 'joint-torques');
-  const box = await find_plot(page, 'joint-torques');
-  await page.mouse.click(box.x + box.width * 0.6, box.y + box.height * 0.5);
+  const box = await click_plot(card, 0.6, 0.5);
   const state = await get_state(page);
   assert.ok(state.time_s > 1, `the time is ${state.time_s} s`);
   const left = await card.locator('.cursor').evaluate((cursor) => cursor.getBoundingClientRect().left);
@@ -289,8 +288,7 @@ test('the replay and the plots over time share their cursor', async () => {
   assert.equal(await page.locator('[data-figure=joint-angles] .cursor').isVisible(), true);
 
   // In a panel of the third move, a click goes to the time of the case.
-  const moves = await find_plot(page, 'momentary-error');
-  await page.mouse.click(moves.x + moves.width * 0.5, moves.y + moves.height * 0.3);
+  await click_plot(await find_figure(page, 'momentary-error'), 0.5, 0.3);
   const in_move = await get_state(page);
   assert.notEqual(in_move.time_s, state.time_s);
   const [[, local_s]] = await get_readings(page, 'momentary-error');
