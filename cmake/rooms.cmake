@@ -20,7 +20,7 @@ endfunction()
 # ARMWRIGHT_FILES_PER_BATCH files of a target are compiled as one: much faster from the beginning, slower after a change. Names in unnamed
 # namespaces must then differ within a room.
 option(ARMWRIGHT_UNITY_BUILD "Compile several files at once: builds faster from the beginning, slower after a change" OFF)
-set(ARMWRIGHT_FILES_PER_BATCH 48 CACHE STRING "The most files that ARMWRIGHT_UNITY_BUILD compiles at once")
+set(ARMWRIGHT_FILES_PER_BATCH 96 CACHE STRING "The most files that ARMWRIGHT_UNITY_BUILD compiles at once")
 # armwright_join_files(TARGET [MOST]): joins the files of a target in the fewest batches, all of about the same size. MOST lowers the limit.
 function(armwright_join_files target)
   if(ARMWRIGHT_UNITY_BUILD)

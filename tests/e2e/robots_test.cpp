@@ -225,10 +225,9 @@ TEST_F(Robots, InMjcfGoThatWayTooAndTheirFilesAreInputs) {
 
 // Drives that take velocities or positions. Their start is good already.
 TEST_F(Robots, WithDrivesOfAnyInterfaceAreTuned) {
-  using Words = std::vector<const char*>;
-  for (const char* interface :
-       sample_or_all<Words>({"control.interface=velocity"},
-                            {"control.interface=velocity", "control.interface=position"})) {
+  for (const char* interface : sample_or_all<std::vector<const char*>>(
+           {"control.interface=velocity"},
+           {"control.interface=velocity", "control.interface=position"})) {
     expect_tuned({"--robot", "irb4600_six", "--set", interface}, 0.5);
   }
 }

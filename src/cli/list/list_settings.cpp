@@ -178,7 +178,7 @@ std::string format_tables(const std::vector<ListedSetting>& settings) {
   return text;
 }
 
-std::string format_page(const std::string& name) {
+std::string format_setting_page(const std::string& name) {
   if (!name.empty()) {
     throw Error(ErrorKind::usage, "the page of settings contains all settings; leave out the name");
   }
@@ -204,7 +204,7 @@ ListKind make_setting_kind() {
       .explain = explain_setting,
       .explain_as_json = [](const std::string& name) { return to_json(name, find_setting(name)); },
       .list_as_json = list_settings_as_json,
-      .explain_as_markdown = format_page};
+      .explain_as_markdown = format_setting_page};
 }
 
 }  // namespace armwright

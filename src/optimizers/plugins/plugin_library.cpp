@@ -230,18 +230,18 @@ OptimizerRow load_library_plugin(const std::filesystem::path& file, const std::s
   try {
     const PluginDescription description = describe(library.file, loading);
     library.keeps_bounds = (description.capabilities & ARMWRIGHT_BOUNDS) != 0;
-    OptimizerRow row{.name = "",
-                     .summary = description.summary,
-                     .source = description.source,
-                     .capabilities = make_capabilities(description.capabilities),
-                     .options = description.options,
-                     .make = [library](const Options& options) -> std::unique_ptr<Optimizer> {
-                       return std::make_unique<LibraryOptimizer>(library, options);
-                     },
-                     .requirements = description.requirements,
-                     .isolated = "with isolate=true",
-                     .input_hashes = {{file.filename().string(), library.hash}},
-                     .short_name = name.empty() ? description.name : ""};
+    OptimizerRow row;
+    row.summary = description.summary;
+    row.source = description.source;
+    row.capabilities = make_capabilities(description.capabilities);
+    row.options = description.options;
+    row.make = [library](const Options& options) -> std::unique_ptr<Optimizer> {
+      return std::make_unique<LibraryOptimizer>(library, options);
+    };
+    row.requirements = description.requirements;
+    row.isolated = "with isolate=true";
+    row.input_hashes = {{file.filename().string(), library.hash}};
+    row.short_name = name.empty() ? description.name : "";
     row.description = make_description(row);
     row.name = library.name;
     std::ranges::move(make_own_options(), std::back_inserter(row.options));

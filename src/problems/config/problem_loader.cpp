@@ -173,8 +173,8 @@ constexpr std::string_view kRobotInName = "{robot}";
 // Returns the problem's name: that of the program, the file's name, or the name that the file gives. "{robot}" in it
 // stands for the name of the URDF file. A file that extends a file with such a name is named after
 // itself.
-std::string read_name(const ConfigTable& table, const std::filesystem::path& path,
-                      const LoadedProblem& loaded) {
+std::string read_problem_name(const ConfigTable& table, const std::filesystem::path& path,
+                              const LoadedProblem& loaded) {
   std::string name =
       table.get_or(kProblemName, loaded.program.empty() ? path.stem().string() : loaded.name);
   if (const std::size_t at = name.find(kRobotInName); at != std::string::npos) {
@@ -335,15 +335,15 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
     load_program(table, programs, loaded);
     usual = loaded.sets;
   } else if (kind == "command") {
-    loaded.name = read_name(table, path, loaded);
+    loaded.name = read_problem_name(table, path, loaded);
     load_command(table, path, programs, loaded);
     usual = loaded.sets;
   } else if (kind == "external") {
-    loaded.name = read_name(table, path, loaded);
+    loaded.name = read_problem_name(table, path, loaded);
     load_external(table, loaded);
     usual = loaded.sets;
   }
-  loaded.name = read_name(table, path, loaded);
+  loaded.name = read_problem_name(table, path, loaded);
   loaded.title = table.get_or(kTitle, loaded.title.empty() ? loaded.name : loaded.title);
   read_schedule_table(table.get_table_or_empty(kScheduleSettings), loaded);
   loaded.racing = read_racing_table(table.get_table_or_empty(kRacingSettings));

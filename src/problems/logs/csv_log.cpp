@@ -52,8 +52,8 @@ std::string_view take_field(std::string_view& line, char separator, bool& is_las
 }
 
 // Returns NaN for an empty field and for what programs write in place of a number that they lack.
-double read_number(std::string_view text, const std::string& file, std::size_t line,
-                   const std::string& column) {
+double read_field(std::string_view text, const std::string& file, std::size_t line,
+                  const std::string& column) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   std::string_view field = unquote_field(text);
   if (field.empty()) {
@@ -185,7 +185,7 @@ Recording read_csv_log(std::string_view text, const std::string& file, const Log
       const std::string_view field = take_field(line, separator, is_last);
       if (place < goals.size() && goals[place] != nullptr) {
         goals[place]->push_back(factors[place] *
-                                read_number(field, file, lines.number(), header[place]));
+                                read_field(field, file, lines.number(), header[place]));
       }
     }
     if (place != header.size()) {

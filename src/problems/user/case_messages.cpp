@@ -19,7 +19,7 @@ using nlohmann::json;
 constexpr std::size_t kLongestReason = 300;
 constexpr std::size_t kMostSeries = 200;
 constexpr std::size_t kMostRecordFiles = 20;
-constexpr std::size_t kMostPoints = 1'000'000;  // of one signal
+constexpr std::size_t kMostSignalPoints = 1'000'000;  // of one signal
 
 // Appends a number so that a reader sees its type: whole numbers of real variables have a point.
 void append_value(const DecisionVariable& variable, double value, std::string& text) {
@@ -94,9 +94,9 @@ void check_id(const json& message, std::uint64_t id) {
 // Reads a list of finite numbers.
 std::vector<double> read_points(const json& object, const std::string& where) {
   const json& list = require(object, "values", where);
-  if (!list.is_array() || list.size() > kMostPoints) {
+  if (!list.is_array() || list.size() > kMostSignalPoints) {
     throw ProtocolError(fmt::format("sent {} whose \"values\" are not a list of at most {} numbers",
-                                    where, kMostPoints));
+                                    where, kMostSignalPoints));
   }
   std::vector<double> values;
   for (const json& value : list) {

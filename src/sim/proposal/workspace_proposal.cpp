@@ -21,7 +21,7 @@
 namespace armwright {
 namespace {
 
-constexpr int kPostures = 2000;
+constexpr int kDrawnPostures = 2000;
 constexpr std::size_t kHomes = 24;  // postures around which a workspace is tried
 constexpr std::size_t kQuickCases = 3;
 constexpr int kCases = 8;
@@ -301,7 +301,7 @@ void set_radius(WorkspaceSphere& sphere, double radius_m) {
 Search::Postures Search::draw_postures() const {
   Postures postures = {kinematics_.home()};
   RandomStream random("proposal/home", 0);
-  for (int i = 0; i < kPostures; ++i) {
+  for (int i = 0; i < kDrawnPostures; ++i) {
     postures.push_back(kinematics_.draw_posture(random));
   }
   return postures;
@@ -402,7 +402,7 @@ void Search::check_holding() {
   }
   if (std::isfinite(easiest.share) && easiest.share > kMostHeldAtHome) {
     refuse_to_hold(robot_, easiest,
-                   fmt::format("in the easiest of {} postures above the floor{}", kPostures,
+                   fmt::format("in the easiest of {} postures above the floor{}", kDrawnPostures,
                                task_.clearance ? " and clear of obstacles" : ""));
   }
 }

@@ -261,7 +261,7 @@ void compare_file(const std::filesystem::path& recorded, const std::filesystem::
   }
 }
 
-json read_manifest(const std::filesystem::path& folder) {
+json read_cell_manifest(const std::filesystem::path& folder) {
   const auto file = folder / "manifest.json";
   try {
     json manifest = json::parse(read_checked_json(file, kFileLimit_bytes));
@@ -291,8 +291,8 @@ CellComparison compare_cells(const std::filesystem::path& recorded,
 
 std::vector<std::string> list_likely_causes(const std::filesystem::path& recorded,
                                             const std::filesystem::path& now) {
-  const json before = read_manifest(recorded);
-  const json after = read_manifest(now);
+  const json before = read_cell_manifest(recorded);
+  const json after = read_cell_manifest(now);
   std::vector<std::string> causes;
   for (const std::string& difference :
        describe_differences(before["configuration"].dump(), after["configuration"].dump())) {

@@ -181,10 +181,11 @@ class RunSurveyor {
     const auto damage = [&](std::string what) {
       add(Finding::Kind::damage, "journal", std::move(what));
     };
-    constexpr std::size_t kMostNamed = 20;
+    constexpr std::size_t kMostNamedLines = 20;
     for (std::size_t i = 0; i < journal.damage.size(); ++i) {
-      if (i == kMostNamed) {
-        damage(fmt::format("and {} more damaged stretches", journal.damage.size() - kMostNamed));
+      if (i == kMostNamedLines) {
+        damage(
+            fmt::format("and {} more damaged stretches", journal.damage.size() - kMostNamedLines));
         break;
       }
       const DamagedStretch& stretch = journal.damage[i];

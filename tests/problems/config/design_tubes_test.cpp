@@ -29,7 +29,7 @@ std::vector<std::string> join_settings(std::vector<std::string> settings,
   return settings;
 }
 
-const CaseBlock kFirstCase{CaseRole::training, "train/1", {0}};
+const CaseBlock kFirstTubeCase{CaseRole::training, "train/1", {0}};
 
 TEST(DesignTubes, AreVariablesInMetresPerJoint) {
   const auto problem = load_tracking("co-design", join_settings(kTubes, kSizes));
@@ -59,7 +59,7 @@ TEST(DesignTubes, GiveTheMassesTheMetricsAndTheConstraint) {
   x[5] = 1.1;  // the length of link 2
   x[6] = 0.4;
   x[7] = 0.03;
-  const Evaluation evaluation = problem->evaluate(x, kFirstCase);
+  const Evaluation evaluation = problem->evaluate(x, kFirstTubeCase);
   const std::vector<Tube> tubes = {{0.35, 0.02}, {0.4, 0.03}, {0.25, 0.02}, {0.2, 0.02}};
   const TrackingConfig& config = problem->config();
   std::vector<double> lengths_m;
@@ -104,7 +104,7 @@ TEST(DesignTubes, GiveMassAndDeflectionToAFront) {
                                  {"objective.kind=front", "objective.energy_weight=0",
                                   R"(objective.quantities=["error","moving_mass","deflection"])"}));
   const ArmDesign start = problem->config().start;
-  const Evaluation evaluation = problem->evaluate(get_start(*problem), kFirstCase);
+  const Evaluation evaluation = problem->evaluate(get_start(*problem), kFirstTubeCase);
   ASSERT_EQ(evaluation.objectives.size(), 3u);
   EXPECT_EQ(evaluation.objectives[1],
             calc_moving_mass_kg(problem->make_robot(start)) + problem->config().task.load_kg);

@@ -23,10 +23,6 @@ using ArmNumber = lanes::Single<double, ArmLevel>;
 using ArmShape = ChainShape<0, kAnyShape, true>;
 using Dynamics = ChainDynamics<ArmNumber, ArmShape>;
 
-std::size_t to_size(int count) {
-  return static_cast<std::size_t>(count);
-}
-
 }  // namespace
 
 struct ArticulatedArm::Chain {
@@ -37,7 +33,7 @@ struct ArticulatedArm::Chain {
     }
     q.assign(joints(), ArmNumber(0));
     rate = acceleration = effort = q;
-    scratch.assign(to_size(calc_dynamics_packs(chain.joints())), ArmNumber(0));
+    scratch.assign(static_cast<std::size_t>(calc_dynamics_packs(chain.joints())), ArmNumber(0));
   }
 
   std::size_t joints() const { return model.joint_count(); }
@@ -198,7 +194,7 @@ Eigen::MatrixXd ArticulatedArm::calc_mass_matrix() const {
     for (int column = 0; column <= row; ++column) {
       mass(row, column) = mass(column, row) = dynamics.mass(row, column).v;
     }
-    const JointPlant& plant = chain_->model.joints[to_size(row)].plant;
+    const JointPlant& plant = chain_->model.joints[static_cast<std::size_t>(row)].plant;
     mass(row, row) += plant.is_elastic() ? 0 : plant.armature;
   }
   return mass;
