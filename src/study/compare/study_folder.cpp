@@ -29,7 +29,7 @@ constexpr const char* kPlanFile = "study.toml";
 // Writes what is not ASCII as JSON does (\u00e9), because the hash of a plan that 1.0 wrote depends
 // on it. TOML forbids JSON's forms of delete and of characters beyond U+FFFF, whose UTF-8 begins with
 // 0xf0; no plan of 1.0 with these could be read back.
-std::string quote(const std::string& text) {
+std::string quote_setting(const std::string& text) {
   const auto is_unfit = [](unsigned char c) { return c >= 0xf0 || c == 0x7f; };
   return std::ranges::any_of(text, is_unfit)
              ? quote_toml(text)
@@ -39,7 +39,7 @@ std::string quote(const std::string& text) {
 std::string quote_list(std::span<const std::string> texts) {
   std::vector<std::string> quoted;
   for (const std::string& text : texts) {
-    quoted.push_back(quote(text));
+    quoted.push_back(quote_setting(text));
   }
   return "[" + join(quoted, ", ") + "]";
 }
@@ -66,7 +66,7 @@ std::string make_questions(const StudyPlan& plan) {
     text += "value = \"failures\"\n";
   }
   if (!plan.reference.empty()) {
-    text += fmt::format("reference = {}\n", quote(plan.reference));
+    text += fmt::format("reference = {}\n", quote_setting(plan.reference));
   }
   return text;
 }
@@ -75,7 +75,7 @@ std::string make_questions(const StudyPlan& plan) {
 std::string make_targets(const StudyPlan& plan) {
   std::string text;
   for (const StudyTarget& target : plan.targets) {
-    text += fmt::format("\n[[target]]\nlabel = {}\nproblems = {}\n", quote(target.label),
+    text += fmt::format("\n[[target]]\nlabel = {}\nproblems = {}\n", quote_setting(target.label),
                         quote_list(target.problems));
     text += target.value ? fmt::format("value = {}\n", format_toml_number(*target.value)) : "";
     text += target.failures ? fmt::format("failures = {}\n", *target.failures) : "";
@@ -88,16 +88,16 @@ std::string make_targets(const StudyPlan& plan) {
 std::string make_method(const StudyPlan& plan, const StudyOptimizer& optimizer) {
   std::string text;
   if (optimizer.stream != optimizer.label) {
-    text += fmt::format("stream = {}\n", quote(optimizer.stream));
+    text += fmt::format("stream = {}\n", quote_setting(optimizer.stream));
   }
   if (!optimizer.schedule && std::ranges::any_of(plan.problems, &StudyProblem::own_schedules)) {
-    text += fmt::format("own_schedule = {}\n", quote(to_text(optimizer.own_schedule)));
+    text += fmt::format("own_schedule = {}\n", quote_setting(to_text(optimizer.own_schedule)));
   }
   if (!optimizer.row.description.empty()) {
-    text += fmt::format("description = {}\n", quote(optimizer.row.description));
+    text += fmt::format("description = {}\n", quote_setting(optimizer.row.description));
   }
   if (optimizer.schedule) {
-    text += fmt::format("schedule = {}\n", quote(to_text(*optimizer.schedule)));
+    text += fmt::format("schedule = {}\n", quote_setting(to_text(*optimizer.schedule)));
   }
   if (!optimizer.settings.empty()) {
     text += fmt::format("set = {}\n", quote_list(optimizer.settings));
@@ -118,12 +118,12 @@ std::string make_body(const StudyPlan& plan) {
       "name = {}\ntitle = {}\nseed = {}\nreplicates = {}\nbudget = {}\nstart_spread = {}\n"
       "constraint_tolerance = {}\ncheckpoints = {}\n{}final_engine = {}\nbaselines = "
       "{}\n{}\n[selection]\nlast = {}\nbest = {}\n{}{}",
-      quote(plan.name), quote(plan.title), plan.seed, plan.replicates, plan.budget,
+      quote_setting(plan.name), quote_setting(plan.title), plan.seed, plan.replicates, plan.budget,
       format_toml_number(plan.start_spread), format_toml_number(plan.constraint_tolerance),
       plan.checkpoints,
       plan.first_checkpoint > 1 ? fmt::format("first_checkpoint = {}\n", plan.first_checkpoint)
                                 : "",
-      quote(plan.final_engine), plan.baselines ? "true" : "false", make_questions(plan),
+      quote_setting(plan.final_engine), plan.baselines ? "true" : "false", make_questions(plan),
       plan.selection.last, plan.selection.best,
       plan.selection.most > 0 ? fmt::format("most = {}\n", plan.selection.most) : "",
       plan.judge_along ? "along = true\n" : "");
@@ -136,16 +136,16 @@ std::string make_body(const StudyPlan& plan) {
     text += fmt::format(
         "\n[[problem]]\nname = {}\nlabel = {}\nset = {}\nschedule = {}\nvalidation_set = {}\n"
         "test_set = {}\nconfiguration_sha256 = {}\n{}",
-        quote(problem.name), quote(problem.label), quote_list(problem.settings),
-        quote(describe_schedule(problem)), quote(sets.validation), quote(sets.test),
-        quote(calc_configuration_hash(problem.loaded)), inputs);
+        quote_setting(problem.name), quote_setting(problem.label), quote_list(problem.settings),
+        quote_setting(describe_schedule(problem)), quote_setting(sets.validation),
+        quote_setting(sets.test), quote_setting(calc_configuration_hash(problem.loaded)), inputs);
   }
   for (const StudyOptimizer& optimizer : plan.optimizers) {
     text += fmt::format(
         "\n[[optimizer]]\nname = {}\nlabel = {}\nbaseline = {}\noptions = {}\ninputs = {}\n{}",
-        quote(optimizer.name), quote(optimizer.label), optimizer.baseline ? "true" : "false",
-        quote_list(list_options(optimizer)), quote_list(list_inputs(optimizer.row.input_hashes)),
-        make_method(plan, optimizer));
+        quote_setting(optimizer.name), quote_setting(optimizer.label),
+        optimizer.baseline ? "true" : "false", quote_list(list_options(optimizer)),
+        quote_list(list_inputs(optimizer.row.input_hashes)), make_method(plan, optimizer));
   }
   return text + make_targets(plan);
 }
