@@ -67,6 +67,31 @@ test('has the three errors, the whole workspace and speed, and the command that 
   await page.close();
 });
 
+test('every number of its results is the recorded one, in the unit of its head', async () => {
+  const { metrics, winner } = JSON.parse(readFileSync(join(kFolder, 'run', 'result.json'), 'utf8'));
+  const errors = winner.test.case_errors.toSorted((a, b) => a - b);
+  const metric = (name) => winner.test.metrics[metrics.indexOf(name)];
+  const expected = {
+    cases: errors.length,
+    mean: (1000 * errors.reduce((sum, error) => sum + error, 0)) / errors.length,
+    median: 500 * (errors[Math.floor((errors.length - 1) / 2)] + errors[Math.floor(errors.length / 2)]),
+    worst: 1000 * errors.at(-1),
+    'energy J': metric('energy'),
+    'clamped %': 100 * metric('saturated_share'),
+  };
+  assert.ok(expected['clamped %'] > 0);
+  const page = await open_datasheet(folder);
+  const [heads, cells] = await page
+    .locator('table', { has: page.getByText('Errors at rest, mm') })
+    .locator('tr')
+    .evaluateAll((rows) => rows.slice(0, 2).map((row) => Array.from(row.cells, (cell) => cell.textContent)));
+  for (const [head, number] of Object.entries(expected)) {
+    const shown = Number(cells[heads.indexOf(head)]);
+    assert.ok(Math.abs(shown - number) <= 0.006 * number, `${head}: ${shown}, recorded ${number}`);
+  }
+  await page.close();
+});
+
 test('a PID fits on one page', () => expect_one_page(folder));
 
 test('so does the controller with the most gains', async () => {
