@@ -226,9 +226,9 @@ class SegmentKernel {
 };
 
 // Straight-line code for each known length runs 1.3 times as fast as the code for any length, which
-// is the same code with loops, but takes the compiler four times as long. So only the instruction
-// sets of today's processors have it. The address sanitizer would need half an hour for it.
-#if defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__)
+// is the same code with loops, but takes the compiler four times as long. So of the levels of x86
+// only those of today's processors have it. The address sanitizer would need half an hour for it.
+#if (defined(__AVX2__) || !defined(__x86_64__)) && !defined(__SANITIZE_ADDRESS__)
 inline constexpr bool kHasKnownLengths = true;
 #else
 inline constexpr bool kHasKnownLengths = false;
