@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { cpSync, existsSync, mkdirSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import http from 'node:http';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -195,6 +195,9 @@ test('an update of the progress touches nothing else', async (t) => {
   await running.locator('tbody td', { hasText: /^20$/ }).waitFor();
   assert.deepEqual(await look(), unchanged);
   assert.equal(await running.locator('th[aria-sort=ascending]').count(), 1);
+  // What the table gives is what it shows now.
+  const [csv] = await Promise.all([page.waitForEvent('download'), running.getByRole('button', { name: 'CSV' }).click()]);
+  assert.match(readFileSync(await csv.path(), 'utf8'), /r06.*,20,/s);
 
   write_attempt(attempt, 'error.txt', 'the disk is full\n');
   await page.locator('[data-figure=failures-so-far] tbody tr', { hasText: 'the disk is full' }).waitFor();

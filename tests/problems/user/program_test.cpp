@@ -148,6 +148,10 @@ TEST(ProgramProblem, EveryCaseHasItsOwnSeedWhichDependsOnItsSetAndNumber) {
   EXPECT_EQ(get_seed(kFirstCase), seed);
   EXPECT_NE(get_seed(other), seed);
   EXPECT_NE(get_seed(elsewhere), seed);
+  // In one question each case has the seed that it has alone.
+  CaseBlock both = kFirstCase;
+  both.numbers = {0, 1};
+  EXPECT_THAT(evaluate(loaded, kGood, both).case_errors, ElementsAre(seed, get_seed(other)));
 }
 
 TEST(ProgramProblem, HandsOverSignalsAndFiles) {
