@@ -195,7 +195,7 @@ test('an update of the progress touches nothing else', async (t) => {
   await running.locator('tbody td', { hasText: /^20$/ }).waitFor();
   assert.deepEqual(await look(), unchanged);
   assert.equal(await running.locator('th[aria-sort=ascending]').count(), 1);
-  // What the table gives is what it shows now.
+  // The downloaded file has the rows that the table shows now.
   const [csv] = await Promise.all([page.waitForEvent('download'), running.getByRole('button', { name: 'CSV' }).click()]);
   assert.match(readFileSync(await csv.path(), 'utf8'), /r06.*,20,/s);
 

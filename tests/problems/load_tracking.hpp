@@ -1,6 +1,9 @@
 // Loads tracking problems for tests.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +27,18 @@ inline std::shared_ptr<const TrackingProblem> load_tracking(
 
 inline std::vector<double> get_start(const TrackingProblem& problem) {
   return problem.make_vector(problem.config().start);
+}
+
+// Returns the metric with this name. Adds a failure to the test if there is none.
+inline double get_metric(const TrackingProblem& problem, const Evaluation& evaluation,
+                         const std::string& name) {
+  const auto& metrics = problem.description().metrics;
+  const auto found = std::ranges::find(metrics, name, &Quantity::name);
+  if (found == metrics.end()) {
+    ADD_FAILURE() << "no metric " << name;
+    return 0;
+  }
+  return evaluation.metrics.at(static_cast<std::size_t>(found - metrics.begin()));
 }
 
 }  // namespace armwright

@@ -24,18 +24,6 @@ const std::string kLinks = R"(variables.optimize=["length_scale", "section_scale
 const std::string kSpeed = R"(variables.task=["speed"])";
 const std::string kMotors = "motors.torque_per_mass_n_m_per_kg=100";
 
-double get_test_metric(const TrackingProblem& problem, const Evaluation& evaluation,
-                       const std::string& name) {
-  const auto& metrics = problem.description().metrics;
-  for (std::size_t i = 0; i < metrics.size(); ++i) {
-    if (metrics[i].name == name) {
-      return evaluation.metrics.at(i);
-    }
-  }
-  ADD_FAILURE() << "no metric " << name;
-  return 0;
-}
-
 const CaseBlock kTraining{CaseRole::training, "train/1", {0, 1}};
 
 TEST(DesignVariables, HaveNamesUnitsAndSpansOfTheirOwn) {
@@ -104,7 +92,7 @@ TEST(SpeedVariable, ChangesTheDurationOfACaseAsComputed) {
       const double move_m = problem->config().workspace.calc_move_m(k);
       periods += std::ceil((std::max(move_m, 0.9) / speed_m_per_s + 0.5) / 0.01 - 1e-9);
     }
-    EXPECT_NEAR(get_test_metric(*problem, evaluation, "duration"), periods * 0.01, 1e-10);
+    EXPECT_NEAR(get_metric(*problem, evaluation, "duration"), periods * 0.01, 1e-10);
     // What the task's own speed makes of it, to the last bit.
     const auto fixed = load_tracking(
         "q1-complex", with_lanes({"task.speed_m_per_s=" + std::to_string(speed_m_per_s)}));
@@ -198,11 +186,11 @@ TEST(DesignedArm, MovingMassIsThatOfLinksMotorsAndLoad) {
   std::vector<double> x = get_start(*problem);
   const double links_kg = 112.9 + 266.3 + 545.6 + 13.8;
   const double motors_kg = (45000 + 20000 + 200) / 100.0;
-  EXPECT_NEAR(get_test_metric(*problem, problem->evaluate(x, kTraining), "moving_mass"),
+  EXPECT_NEAR(get_metric(*problem, problem->evaluate(x, kTraining), "moving_mass"),
               links_kg + motors_kg + 20, 1e-9);
   x[2] = 1.2;  // joint 2
   x[3] = 0.75;
-  EXPECT_NEAR(get_test_metric(*problem, problem->evaluate(x, kTraining), "moving_mass"),
+  EXPECT_NEAR(get_metric(*problem, problem->evaluate(x, kTraining), "moving_mass"),
               links_kg + 266.3 * (1.2 * 0.75 - 1) + motors_kg + 20, 1e-9);
 }
 

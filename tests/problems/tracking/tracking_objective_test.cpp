@@ -282,13 +282,6 @@ std::pair<std::shared_ptr<const TrackingProblem>, Evaluation> evaluate_start(
   return {problem, std::move(evaluation)};
 }
 
-double get_metric(const TrackingProblem& problem, const Evaluation& evaluation,
-                  const std::string& name) {
-  const auto& metrics = problem.description().metrics;
-  const auto found = std::ranges::find(metrics, name, &Quantity::name);
-  return evaluation.metrics.at(static_cast<std::size_t>(found - metrics.begin()));
-}
-
 TEST(Front, OfErrorAndTorqueIsErrorVsTorqueBitByBit) {
   const auto [old_kind, old_one] = evaluate_start({"objective.kind=error_vs_torque"});
   const auto [front, one] =
