@@ -5,10 +5,12 @@
 #include <link.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 #include <vector>
 
 #include "base/error.hpp"
@@ -41,12 +43,18 @@ std::filesystem::path find_module(const Module& module) {
 // file.
 std::string explain_incomplete(const std::filesystem::path& file) {
   ElfW(Ehdr) header{};
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) {  // opening a pipe would wait for ever
+    return "is not a file";
+  }
   std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    return fmt::format("cannot be read ({})", std::generic_category().message(errno));
+  }
   if (!stream.read(reinterpret_cast<char*>(&header), sizeof header) ||
       std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0) {
     return "is not a shared library";
   }
-  std::error_code ignored;
   const std::uintmax_t size = std::filesystem::file_size(file, ignored);
   const std::uintmax_t wanted =
       header.e_shoff + std::uintmax_t{header.e_shentsize} * header.e_shnum;

@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <string>
@@ -118,6 +119,28 @@ TEST_F(ModuleLoading, AMissingOneIsNamedAndNothingElseIsTaken) {
   EXPECT_THAT(run_copy({"doctor", "--json"}).out, HasSubstr("is missing"));
 }
 
+TEST_F(ModuleLoading, AFinishedStudyIsReadWithoutAModule) {
+  const Words compare = {"compare",     "--problems",   "sphere", "--optimizers",
+                         "pagmo:de,ga", "--replicates", "2",      "--budget",
+                         "60",          "--out",        "study"};
+  ASSERT_EQ(run_copy(compare).exit_code, 0);
+  std::filesystem::remove(module());
+  for (const Words& words : std::vector<Words>{{"show", "study"},
+                                               {"status", "study"},
+                                               {"merge", "study"},
+                                               {"report", "study", "--quiet"},
+                                               {"export", "study", "--format", "csv"}}) {
+    const Outcome outcome = run_copy(words);
+    EXPECT_EQ(outcome.exit_code, 0) << words[0] << outcome.err;
+  }
+  Words another = compare;
+  another.back() = "another";
+  const Outcome outcome = run_copy(another);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("is not available: its module"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "another"));
+}
+
 TEST_F(ModuleLoading, OneOfAnotherBuildIsRefused) {
   void* const opened = dlopen(module().c_str(), RTLD_NOW | RTLD_LOCAL);
   ASSERT_NE(opened, nullptr) << dlerror();
@@ -153,6 +176,9 @@ TEST_F(ModuleLoading, OneThatIsNotWholeIsRefused) {
   }
   write_module("no library, but a text that is longer than the header of a library would be\n");
   EXPECT_THAT(optimize().err, HasSubstr("is not a shared library"));
+  std::filesystem::remove(module());
+  ASSERT_EQ(mkfifo(module().c_str(), 0600), 0);
+  EXPECT_THAT(optimize().err, HasSubstr("is not a file"));
 }
 
 TEST_F(ModuleLoading, ALibraryWithoutItsSymbolsIsRefused) {

@@ -120,9 +120,12 @@ OptimizerRow load_optimizer(std::string_view name) {
     }
   }
   OptimizerRow row = find_optimizer(name);
-  if (!row.unavailable.empty()) {
-    throw Error(ErrorKind::usage,
-                fmt::format("optimizer '{}' is not available: {}", row.name, row.unavailable));
+  if (!row.unavailable
+           .empty()) {  // what only reads a recorded run or study needs no more than the row
+    row.make = [row](const Options&) -> std::unique_ptr<Optimizer> {
+      throw Error(ErrorKind::usage,
+                  fmt::format("optimizer '{}' is not available: {}", row.name, row.unavailable));
+    };
   }
   return row;
 }
