@@ -205,7 +205,7 @@ function draw_parallel(look: Look, scope: Scope, problem: StudyProblem, which: s
   const x: Part = { type: 'value', show: false, min: -0.4, max: Math.max(1, problem.variables.length) - 0.6 };
   const y: Part = { ...make_axis(look, 'y', '', {}), show: false, min: 0, max: 1 };
   return make_chart(look, x, y, series, {
-    grid: { left: 66, right: 16, top: names.length > 1 ? 62 : 30, bottom: 108, narrow: { left: 26, bottom: 150 } },
+    grid: { left: 66, right: 16, top: names.length > 1 ? 62 : 30, bottom: 108, narrow: { left: 26, bottom: 150, head: 48 } },
     legend: {
       show: names.length > 1,
       type: 'scroll',
