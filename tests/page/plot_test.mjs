@@ -15,7 +15,9 @@ function fail_program(...args) {
   return assert.fail('it was done');
 }
 
-for (const name of ['run', 'front', 'function', 'study', 'reproduction', 'comparison', 'study-comparison']) {
+const kSample = ['run', 'study', 'comparison'];
+const kOthers = ['front', 'function', 'reproduction', 'study-comparison']; // in the long tests (../long-tests.md)
+for (const name of process.env.ARMWRIGHT_LONG_TESTS === undefined ? kSample : [...kSample, ...kOthers]) {
   test(`all figures of the page ${name}`, () => {
     const page = join(kFolder, name + '.html');
     const folder = join(kFolder, name + '-figures');

@@ -123,7 +123,9 @@ TEST(Instances, MistakesAreNamed) {
 // Which solver of the numeric inverse kinematics a recorded problem has.
 
 LoadedProblem load_arm(std::vector<std::string> overrides = {}) {
-  overrides.emplace_back("robot.urdf=irb4600_six");
+  // With a given workspace, none has to be proposed.
+  overrides.insert(overrides.end(), {"robot.urdf=irb4600_six", "workspace.centre_m=[1.4,0,0.9]",
+                                     "workspace.radius_m=0.3"});
   return load_problem("robot", overrides);
 }
 

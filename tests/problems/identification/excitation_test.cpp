@@ -58,10 +58,10 @@ TEST(Excitation, HasTheDerivativesOfItsPositions) {
   // Central differences err by h^2 / 6 times the third derivative. That of a harmonic is w^2 times its
   // rate, and the blending makes it larger by less than w_max^2 = (2 pi 5 / 10)^2 with 60 / blend_s^2.
   const double tolerance = h * h / 6 * (100 + 60) * 10;
+  const double scale = 1 + its.accelerations.cwiseAbs().maxCoeff();
   for (Eigen::Index k = 1; k + 1 < kSamples; k += 7) {
     const Eigen::RowVectorXd rate = (its.positions.row(k + 1) - its.positions.row(k - 1)) / (2 * h);
     const Eigen::RowVectorXd acceleration = (its.rates.row(k + 1) - its.rates.row(k - 1)) / (2 * h);
-    const double scale = 1 + its.accelerations.cwiseAbs().maxCoeff();
     ASSERT_LT((rate - its.rates.row(k)).cwiseAbs().maxCoeff(), tolerance * scale) << k;
     ASSERT_LT((acceleration - its.accelerations.row(k)).cwiseAbs().maxCoeff(), tolerance * scale)
         << k;

@@ -419,8 +419,9 @@ TEST(PerturbationTable, AllIsTheFivePresetsTogether) {
   for (const std::string robot : {"irb4600_40_255", "irb4600_six"}) {
     SCOPED_TRACE(robot);
     const auto load_with = [&](const std::string& preset) {
-      const std::vector<std::string> overrides = {"perturbation.preset=" + preset,
-                                                  "robot.urdf=" + robot};
+      const std::vector<std::string> overrides = {
+          "perturbation.preset=" + preset, "robot.urdf=" + robot, "workspace.centre_m=[1.4,0,0.9]",
+          "workspace.radius_m=0.3"};
       return load_problem("robot", overrides).tracking()->config().perturbation;
     };
     Perturbation together = load_with("friction");
@@ -443,6 +444,9 @@ TEST(PerturbationTable, KeysBesideAPresetReplaceItsOtherForm) {
       key = "perturbation." + key;
     }
     keys.push_back("robot.urdf=" + robot);
+    if (robot != "planar2") {  // none has to be proposed
+      keys.insert(keys.end(), {"workspace.centre_m=[1.4,0,0.9]", "workspace.radius_m=0.3"});
+    }
     const LoadedProblem loaded = load_problem("robot", keys);
     const Perturbation& p = loaded.tracking()->config().perturbation;
     const LoadedProblem again = load_recorded_problem(loaded.resolved_json, loaded.name, "");
@@ -454,14 +458,14 @@ TEST(PerturbationTable, KeysBesideAPresetReplaceItsOtherForm) {
   const std::string thesis = "irb4600_40_255";
   for (const std::string preset : {"preset=load-0-40", "preset=all"}) {
     SCOPED_TRACE(preset);
-    const Perturbation kg = load_with("arm7", {preset, "load_kg=[0,5]"});
+    const Perturbation kg = load_with("irb4600_six", {preset, "load_kg=[0,5]"});
     EXPECT_EQ(kg.load_kg, Load({0, 5}));
     EXPECT_EQ(kg.load_share, Load());
     const Perturbation share = load_with(thesis, {preset, "load_share=[0,0.2]"});
     EXPECT_EQ(share.load_share, Load({0, 0.2}));
     EXPECT_NE(share.load_kg, Load({0, 40}));
-    EXPECT_EQ(load_with("arm7", {preset, "load_share=[]"}).load_kg, Load());
-    EXPECT_EQ(load_with("arm7", {preset, "load_kg=[]"}).load_kg, Load());
+    EXPECT_EQ(load_with("irb4600_six", {preset, "load_share=[]"}).load_kg, Load());
+    EXPECT_EQ(load_with("irb4600_six", {preset, "load_kg=[]"}).load_kg, Load());
     EXPECT_EQ(load_with(thesis, {preset, "load_share=[]"}).load_kg, Load());
   }
   const Perturbation own =

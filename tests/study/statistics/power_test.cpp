@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/random.hpp"
+#include "sample_or_all.hpp"
 #include "study/statistics/significance.hpp"
 #include "study/statistics/support.hpp"
 
@@ -39,9 +40,9 @@ double count_found(int pairs, double a12, std::size_t tests, int studies) {
 TEST(Power, IsTheShareOfStudiesThatFindTheDifference) {
   constexpr int kStudies = 4000;
   const double tolerance = 4 * std::sqrt(0.25 / kStudies + 0.25 / 5000);
-  for (const int pairs : {9, 15, 30, 50, 60, 140}) {
+  for (const int pairs : sample_or_all<std::vector<int>>({15, 60}, {9, 15, 30, 50, 60, 140})) {
     for (const double a12 : {0.56, 0.64, 0.71, 0.9}) {
-      for (const std::size_t tests : {1, 6, 66}) {
+      for (const std::size_t tests : sample_or_all<std::vector<std::size_t>>({6}, {1, 6, 66})) {
         EXPECT_NEAR(calc_power(pairs, a12, tests), count_found(pairs, a12, tests, kStudies),
                     tolerance)
             << pairs << " pairs, A12 " << a12 << ", " << tests << " tests";
