@@ -120,11 +120,11 @@ OptimizerRow load_optimizer(std::string_view name) {
     }
   }
   OptimizerRow row = find_optimizer(name);
-  if (!row.unavailable
-           .empty()) {  // what only reads a recorded run or study needs no more than the row
-    row.make = [row](const Options&) -> std::unique_ptr<Optimizer> {
-      throw Error(ErrorKind::usage,
-                  fmt::format("optimizer '{}' is not available: {}", row.name, row.unavailable));
+  // A command that only reads a recorded run or study needs no more than the row.
+  if (!row.unavailable.empty()) {
+    row.make = [what = fmt::format("optimizer '{}' is not available: {}", row.name,
+                                   row.unavailable)](const Options&) -> std::unique_ptr<Optimizer> {
+      throw Error(ErrorKind::usage, what);
     };
   }
   return row;

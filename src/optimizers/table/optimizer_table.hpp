@@ -23,7 +23,8 @@ const OptimizerRow& find_optimizer(std::string_view name);
 
 // Returns the optimizer that `--optimizer NAME` means: a row of the table, multistart:NAME, a
 // shared library (./libmine.so, or its name on the plugin path) or a program (exec:COMMAND). Throws
-// Error{usage} if there is none of that name, and Error{bad_data} if a plugin cannot be used.
+// Error{usage} if there is none of that name, and Error{bad_data} if a plugin cannot be used. Of an
+// unavailable optimizer, making it throws Error{usage}.
 OptimizerRow load_optimizer(std::string_view name);
 
 // Returns whether load_optimizer() would start a program or open a library. Starts and opens
