@@ -1,5 +1,5 @@
-// Every tab of every page is visited once at the widths of a telephone, a tablet and two screens, in both themes. At each
-// width nothing leaves its place and every chart is drawn. On the telephone and on a screen, in different themes, axe-core
+// Every tab of every page is visited once at the widths of a telephone, a tablet and two screens, in both themes; the quick
+// check visits two pages at all of them, and the others as on a telephone and on one screen (../long-tests.md). At each width nothing leaves its place and every chart is drawn. On the telephone and on a screen, in different themes, axe-core
 // finds nothing, and on the screen it also looks at the dialog of the first figure. Each chart has a sentence about what
 // it shows, each tab has its figures, and a page calls each design by one name.
 import assert from 'node:assert/strict';
@@ -12,6 +12,7 @@ import { start_watch } from './pages.mjs';
 
 const kWidths = [390, 768, 1280, 1920];
 const kWithAxe = [390, 1280];
+const kAtAllWidths = ['run', 'study']; // in the quick check
 const kThemes = ['light', 'dark'];
 
 const kOfDesigns = ['joint-angles', 'joint-errors', 'joint-torques', 'distance-response', 'momentary-error', 'test-errors'];
@@ -68,10 +69,11 @@ function list_texts() {
 
 // Returns the faults, the names of all figures and tables, and the figures of the thesis to which some of them belong.
 async function visit(page, name, themes) {
+  const widths = process.env.ARMWRIGHT_LONG_TESTS === undefined && !kAtAllWidths.includes(name) ? kWithAxe : kWidths;
   const faults = [];
   const names = new Map();
   const thesis = new Set();
-  await go_through(page, kWidths, themes, async (tab, width, theme) => {
+  await go_through(page, widths, themes, async (tab, width, theme) => {
     const add = (found, place = '') => faults.push(...found.map((fault) => `${name}, ${tab}, ${width} px, ${theme}${place}: ${fault}`));
     add(await page.evaluate(find_layout_faults));
     add(await find_faulty_cards(page, tab, names));
