@@ -18,7 +18,7 @@ foreach(level scalar sse2 avx2 avx512)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64|amd64")
     list(APPEND flags ${instructions_${level}})
   endif()
-  # Other flags, as -O2 and assertions in the preset ci, change which operations the compiler fuses, and so the last bits. Every Release
+  # Other flags, as -O1 and assertions in the preset ci, change which operations the compiler fuses, and so the last bits. Every Release
   # build compiles the kernels with these flags, so CI tests the machine code that is shipped. So do Debug builds, whose tests would
   # otherwise wait for the kernels.
   foreach(flag -O3 -DNDEBUG -U_GLIBCXX_ASSERTIONS)
