@@ -14,10 +14,15 @@ def plain(name):
     return re.sub(r"^(\w+)\.(?:\w+/)?([\w]+)(?:/\w+)?\.(\w+)(?:/\w+)?$", r"\1.\2.\3", name)
 
 
+def list_of_ctest(ctest, build, *options):
+    """The names of the tests of ctest."""
+    text = subprocess.run([ctest, "-N", *options], cwd=build, check=True, capture_output=True, text=True).stdout
+    return {line.split(": ", 1)[1].strip() for line in text.splitlines() if re.match(r"\s*Test\s+#\d+: ", line)}
+
+
 def list_tests(ctest, build):
     """The names of the tests of ctest, with those in the test programs, as PROGRAM.SUITE.TEST, in place of the programs."""
-    text = subprocess.run([ctest, "-N"], cwd=build, check=True, capture_output=True, text=True).stdout
-    names = {line.split(": ", 1)[1].strip() for line in text.splitlines() if re.match(r"\s*Test\s+#\d+: ", line)}
+    names = list_of_ctest(ctest, build)
     for program in sorted((pathlib.Path(build) / "bin").glob("*_tests")):
         room = program.name.removesuffix("_tests")
         names = {name for name in names if not re.fullmatch(rf"{room}(\.\d+|\.long)?", name)}
