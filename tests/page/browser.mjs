@@ -101,9 +101,10 @@ export async function find_figure(page, id) {
   return card;
 }
 
-// Clicks in a figure's chart at these shares of its width and height, as soon as its place no longer changes. Returns the place.
+// Clicks in a figure's chart at these shares of its width and height, as soon as it is drawn and its place no longer changes. Returns the place.
 export async function click_plot(card, across, down) {
   const plot = card.locator('.plot');
+  await plot.locator('svg path').first().waitFor({ state: 'attached' });
   const { width, height } = await plot.boundingBox();
   await plot.click({ position: { x: width * across, y: height * down } });
   return plot.boundingBox();

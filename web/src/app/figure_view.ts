@@ -130,6 +130,11 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
     {
       on_point: (panel, x) => clock.point(get_key(), x + get_part(panel).from),
       on_leave: () => clock.point(get_key(), null),
+      on_click: (panel, x) => {
+        if (figure.time !== undefined) {
+          clock.set(figure.time.replay, figure.time.case(picked), x + get_part(panel).from);
+        }
+      },
       on_range: (panel, { from, to }) => clock.zoom(get_key(), { from: from + get_part(panel).from, to: to + get_part(panel).from }),
       on_reset: () => clock.zoom(get_key(), null),
     },
@@ -314,16 +319,6 @@ export function make_figure_view(first: Figure, look: Look, clock: Clock): View 
         draw();
       }
       move_cross_hair();
-    });
-    chart.getZr().on('click', (event: { offsetX: number; offsetY: number }) => {
-      const time = figure.time;
-      const on = chart;
-      to_list((drawn as { xAxis?: object }).xAxis).forEach((_, panel) => {
-        if (on !== null && time !== undefined && on.containPixel({ gridIndex: panel }, [event.offsetX, event.offsetY])) {
-          const seconds = on.convertFromPixel({ xAxisIndex: panel }, event.offsetX) as number;
-          clock.set(time.replay, time.case(picked), seconds + get_part(panel).from);
-        }
-      });
     });
   }
 

@@ -14,6 +14,7 @@ export interface Rect {
 export interface GestureEvents {
   on_point(panel: number, x: number): void;
   on_leave(): void;
+  on_click(panel: number, x: number): void; // not at the end of a drag
   on_range(panel: number, range: Range): void;
   on_reset(): void; // a double click in a panel
 }
@@ -35,6 +36,7 @@ export function add_gestures(
 ): HTMLElement {
   const band = make('div', { class: 'zoom-band', hidden: '', 'aria-hidden': 'true' });
   let drag: { panel: number; from_px: number; is_long: boolean } | null = null;
+  let ends_drag = false; // the click that the browser reports next
 
   const get_place = (event: MouseEvent): [number, number] => {
     const { left, top } = plot.getBoundingClientRect();
@@ -76,6 +78,7 @@ export function add_gestures(
     const chart = get_chart();
     const place = get_place(event);
     const panel = chart === null ? -1 : find_at(chart, place);
+    ends_drag = false;
     if (event.pointerType === 'mouse' && event.button === 0 && panel >= 0) {
       drag = { panel, from_px: place[0], is_long: false };
     }
@@ -109,6 +112,7 @@ export function add_gestures(
   });
   plot.addEventListener('pointerup', (event) => {
     const chart = get_chart();
+    ends_drag = drag?.is_long ?? false;
     if (drag?.is_long && chart !== null) {
       const [left, right] = find_ends(chart, get_place(event)[0]);
       if (right - left >= kShortestDrag_px) {
@@ -123,7 +127,16 @@ export function add_gestures(
       events.on_leave();
     }
   });
-  plot.addEventListener('click', point); // a tap, too
+  // A tap, too. ECharts reports no click if it has drawn the chart anew between press and release.
+  plot.addEventListener('click', (event) => {
+    point(event);
+    const chart = get_chart();
+    const place = get_place(event);
+    const panel = chart === null ? -1 : find_at(chart, place);
+    if (chart !== null && panel >= 0 && !ends_drag) {
+      events.on_click(panel, read(chart, panel, place[0]));
+    }
+  });
   plot.addEventListener('dblclick', (event) => {
     const chart = get_chart();
     if (chart !== null && find_at(chart, get_place(event)) >= 0) {
