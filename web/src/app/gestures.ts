@@ -42,13 +42,16 @@ export function add_gestures(
     const { left, top } = plot.getBoundingClientRect();
     return [event.clientX - left, event.clientY - top];
   };
-  const find_at = (chart: EChartsType, place: [number, number]): number => {
-    for (let i = 0; i < count(); ++i) {
-      if (chart.containPixel({ gridIndex: i }, place)) {
-        return i;
+  // Returns the panel under the pointer, or null if none is there.
+  const find_at = (event: MouseEvent): { chart: EChartsType; panel: number; x_px: number } | null => {
+    const chart = get_chart();
+    const place = get_place(event);
+    for (let panel = 0; chart !== null && panel < count(); ++panel) {
+      if (chart.containPixel({ gridIndex: panel }, place)) {
+        return { chart, panel, x_px: place[0] };
       }
     }
-    return -1;
+    return null;
   };
   const read = (chart: EChartsType, panel: number, x_px: number): number => chart.convertFromPixel({ xAxisIndex: panel }, x_px) as number;
   const end_drag = (): void => {
@@ -64,23 +67,19 @@ export function add_gestures(
   };
 
   const point = (event: MouseEvent): void => {
-    const chart = get_chart();
-    const place = get_place(event);
-    const panel = chart === null ? -1 : find_at(chart, place);
-    if (chart === null || panel < 0) {
+    const at = find_at(event);
+    if (at === null) {
       events.on_leave();
     } else {
-      events.on_point(panel, read(chart, panel, place[0]));
+      events.on_point(at.panel, read(at.chart, at.panel, at.x_px));
     }
   };
 
   plot.addEventListener('pointerdown', (event) => {
-    const chart = get_chart();
-    const place = get_place(event);
-    const panel = chart === null ? -1 : find_at(chart, place);
+    const at = find_at(event);
     ends_drag = false;
-    if (event.pointerType === 'mouse' && event.button === 0 && panel >= 0) {
-      drag = { panel, from_px: place[0], is_long: false };
+    if (event.pointerType === 'mouse' && event.button === 0 && at !== null) {
+      drag = { panel: at.panel, from_px: at.x_px, is_long: false };
     }
   });
   plot.addEventListener('pointermove', (event) => {
@@ -130,16 +129,13 @@ export function add_gestures(
   // A tap, too. ECharts reports no click if it has drawn the chart anew between press and release.
   plot.addEventListener('click', (event) => {
     point(event);
-    const chart = get_chart();
-    const place = get_place(event);
-    const panel = chart === null ? -1 : find_at(chart, place);
-    if (chart !== null && panel >= 0 && !ends_drag) {
-      events.on_click(panel, read(chart, panel, place[0]));
+    const at = find_at(event);
+    if (at !== null && !ends_drag) {
+      events.on_click(at.panel, read(at.chart, at.panel, at.x_px));
     }
   });
   plot.addEventListener('dblclick', (event) => {
-    const chart = get_chart();
-    if (chart !== null && find_at(chart, get_place(event)) >= 0) {
+    if (find_at(event) !== null) {
       events.on_reset();
     }
   });
