@@ -163,11 +163,14 @@ RunPlan make_plan(const struct armwright_run_request& request,
   return plan;
 }
 
-std::filesystem::path choose_folder(const char* given, const RunPlan& plan) {
-  if (given == nullptr) {
-    return choose_run_folder("results", make_run_name(plan), false);
+std::filesystem::path choose_folder(const struct armwright_run_request& request,
+                                    const RunPlan& plan) {
+  if (request.folder == nullptr) {
+    const std::vector<std::string> settings =
+        read_texts(request.settings, request.setting_count, "the settings");
+    return choose_run_folder("results", make_folder_name(plan, settings), false);
   }
-  const auto path = std::filesystem::path(given).lexically_normal();
+  const auto path = std::filesystem::path(request.folder).lexically_normal();
   return path.has_filename() ? path : path.parent_path();  // "results/mine/"
 }
 
@@ -254,7 +257,7 @@ const struct armwright_run_result* run(const struct armwright_run_request& reque
   }
   RunRequest own;
   own.plan = make_plan(request, native);
-  own.folder = choose_folder(request.folder, own.plan);
+  own.folder = choose_folder(request, own.plan);
   own.jobs = std::max<std::uint32_t>(request.jobs, 1);
   own.command_line = read_command_line();
   StopSignal stop;

@@ -39,7 +39,7 @@ async function shoot_replay(folder, name) {
   await shoot(page.locator('.card', { has: page.locator('.replay') }), name);
 }
 
-await shoot_replay('q1-complex-ga-seed1', 'replay');
+await shoot_replay('irb4600-auto-seed1', 'replay');
 await shoot_replay('my_arm-cmaes-seed1', 'robot');
 
 const study = await open('q1', 'light');

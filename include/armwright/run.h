@@ -58,7 +58,7 @@ struct armwright_run_request {
   int64_t budget;       /* training cases; 0: 10000 */
   const char* schedule; /* "fixed:5"; NULL: one fixed case */
   const char* racing;   /* "halving:4:2"; NULL: none */
-  const char* folder;   /* NULL: results/PROBLEM-OPTIMIZER-seedN. A run in it is resumed */
+  const char* folder;   /* NULL: results/PROBLEM-OPTIMIZER-seedN and what was set. A run in it is resumed */
   uint32_t jobs;        /* threads; 0: 1 */
   double time_limit_s;  /* 0: none. The run ends early then, and the same call resumes it */
 

@@ -48,8 +48,8 @@ struct Settings {
   std::string optimizer = "ga";
   std::int64_t budget = 10000;  // training cases
   std::uint64_t seed = 1;
-  std::string folder = {};                 // default: results/PROBLEM-OPTIMIZER-seedN
-  unsigned jobs = 1;                       // threads that call evaluate()
+  std::string folder = {};  // default: results/PROBLEM-OPTIMIZER-seedN and what was set
+  unsigned jobs = 1;        // threads that call evaluate()
   std::vector<std::string> options = {};   // of the optimizer: "sigma=0.2"
   std::vector<std::string> settings = {};  // of the problem: "sets.test_cases=50"
   std::string schedule = {};               // "fixed:5"

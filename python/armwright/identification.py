@@ -88,7 +88,7 @@ def identify(
     optimizer, options : optional
         As in optimize(). Default: "ceres:lm" with exact derivatives.
     seed, budget, out, new, jobs, time_limit_s, progress : optional
-        As in optimize(). The default folder is results/ROBOT-plant-OPTIMIZER-seedN.
+        As in optimize(). The default folder is results/ROBOT-plant-OPTIMIZER-seedN and what was set.
     set : mapping or list of str, optional
         Further settings, such as {"identification.prior_scale": 0}.
 

@@ -278,7 +278,7 @@ def optimize(
     racing : str, optional
         "none", "halving:FIRST_CASES:ETA" or "abandonment:MARGIN:CHUNK_CASES".
     out : str or path, optional
-        The folder of the run. Default: results/PROBLEM-OPTIMIZER-seedN in the current folder, as with the program.
+        The folder of the run. Default: results/PROBLEM-OPTIMIZER-seedN and what was set, in the current folder, as with the program.
     new : bool
         Makes another run beside an existing one, in FOLDER-002, FOLDER-003, ...
     jobs : int, optional

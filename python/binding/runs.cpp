@@ -57,7 +57,7 @@ py::tuple optimize(const ProblemHandle& problem, const py::object& optimizer,
   RunRequest request;
   request.plan =
       make_plan(load_for_call(problem, host, place.jobs), load_row(optimizer, host), question);
-  request.folder = place.choose(make_run_name(request.plan));
+  request.folder = place.choose(make_folder_name(request.plan, problem.settings));
   if (const auto old = find_old_settings(request.folder, problem.loaded, problem.settings);
       !old.empty()) {
     std::vector<std::string> settings = problem.settings;
@@ -84,7 +84,7 @@ py::tuple ask_for_points(const ProblemHandle& problem, const py::object& optimiz
   RunRequest request;
   request.plan =
       make_plan(load_for_call(problem, host, place.jobs), load_row(optimizer, host), question);
-  request.folder = place.choose(make_run_name(request.plan));
+  request.folder = place.choose(make_folder_name(request.plan, problem.settings));
   request.command_line = command.empty()
                              ? std::vector<std::string>{"armwright", "ask", request.folder.string()}
                              : command;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -25,6 +26,7 @@ struct ConfigTable::Node {
   std::shared_ptr<const Value> table;
   std::string path;
   const SettingTable* declared;  // what may be read; null: any setting
+  const SettingTable* file;      // the same of the whole document
 };
 
 namespace {
@@ -122,16 +124,27 @@ const Value& require_kind(const Node& node, std::string_view key, Kind kind,
   return value;
 }
 
-double read_number(const Value& value, const std::string& path, const Range& range) {
+double read_number(const Value& value, const std::string& path, const AnySetting& setting) {
+  const Range& range = setting.range;
   if (value.kind != Kind::number && value.kind != Kind::integer) {
     refuse_type(value, path, describe_number(range));
   }
   const double number =
       value.kind == Kind::number ? value.number : static_cast<double>(value.integer);
-  const bool too_low = range.lower_open ? number <= range.lower : number < range.lower;
-  if (too_low || number > range.upper) {
-    config::fail(value.place, fmt::format("{} is {}; it must be {}", path, value.describe(),
-                                          describe_number(range)));
+  if (!range.contains(number)) {
+    constexpr double kMillimetres = 1000;  // per metre
+    constexpr double kFarBeyond = 3;       // a smaller excess is a length in metres
+    const double exceeded = number > range.upper ? range.upper : range.lower;
+    const bool may_be_millimetres = setting.unit == "m" &&
+                                    std::abs(number) > kFarBeyond * std::abs(exceeded) &&
+                                    range.contains(number / kMillimetres);
+    config::fail(
+        value.place,
+        fmt::format("{} is {}; it must be {}{}", path, value.describe(), describe_number(range),
+                    may_be_millimetres
+                        ? fmt::format("; {} m: were millimetres meant? Then write {}",
+                                      value.describe(), format_exact(number / kMillimetres))
+                        : ""));
   }
   return number;
 }
@@ -144,7 +157,7 @@ struct Unknown {
   const Value* table;  // that holds the key
 };
 
-std::string describe_unknown_key(const Unknown& unknown) {
+std::string describe_unknown_key(const Unknown& unknown, std::string_view list_command) {
   const std::vector<std::string>& asked = unknown.table->asked;
   const auto nearest = find_nearest_key(unknown.key, asked);
   return fmt::format(
@@ -152,7 +165,7 @@ std::string describe_unknown_key(const Unknown& unknown) {
       config::join_path(unknown.path, unknown.key),
       nearest ? fmt::format("; did you mean '{}'?", config::join_path(unknown.path, *nearest))
               : ".",
-      asked.empty() ? "(none)" : join(asked, ", "));
+      list_valid(nearest.value_or(unknown.key), asked, list_command));
 }
 
 void collect_unknown(const Value& value, const std::string& path, std::vector<Unknown>& unknown) {
@@ -201,33 +214,52 @@ const Value* find_settled(const Node& node) {
 std::shared_ptr<Node> make_root(std::shared_ptr<const config::Document> document,
                                 const SettingTable* declared) {
   const std::shared_ptr<const Value> root(document, &document->root);
-  return std::make_shared<Node>(Node{std::move(document), root, "", declared});
+  return std::make_shared<Node>(Node{std::move(document), root, "", declared, declared});
 }
 
 std::shared_ptr<Node> make_child(const Node& parent, const Value& table, std::string path,
                                  const SettingTable* declared) {
   return std::make_shared<Node>(Node{parent.document,
                                      std::shared_ptr<const Value>(parent.document, &table),
-                                     std::move(path), declared});
+                                     std::move(path), declared, parent.file});
 }
 
 // The overloads of read() return the value of a key that must be there.
 
 double read(const Node& node, const Setting<double>& setting) {
   return read_number(require(node, setting.key, setting.describe_allowed()),
-                     config::join_path(node.path, setting.key), setting.range);
+                     config::join_path(node.path, setting.key), setting);
+}
+
+// Returns the integer that a value stands for. TOML has no integers of the forms that parse_count()
+// reads: 1e3 is a floating-point number there, and 10k and 2M are strings.
+std::optional<std::int64_t> find_integer(const Value& value) {
+  if (value.kind == Kind::integer) {
+    return value.integer;
+  }
+  if (value.kind == Kind::number) {
+    return parse_count(value.written);
+  }
+  const bool has_unit = value.string.ends_with('k') || value.string.ends_with('M');
+  return value.kind == Kind::string && has_unit ? parse_count(value.string) : std::nullopt;
 }
 
 std::int64_t read_integer(const Node& node, const AnySetting& setting) {
   const std::string must = setting.describe_allowed();
-  const Value& value = require_kind(node, setting.key, Kind::integer, must);
-  const auto number = static_cast<double>(value.integer);
-  if (number < setting.range.lower || number > setting.range.upper) {
+  const Value& value = require(node, setting.key, must);
+  const auto integer = find_integer(value);
+  if (!integer) {
+    refuse_type(value, config::join_path(node.path, setting.key), must);
+  }
+  if (!setting.range.contains(static_cast<double>(*integer))) {
     config::fail(value.place,
                  fmt::format("{} is {}; it must be {}", config::join_path(node.path, setting.key),
                              value.describe(), must));
   }
-  return value.integer;
+  if (value.kind != Kind::integer) {
+    settle_value(node, setting.key, make_settled(*integer));  // the record has 1000 for 1e3
+  }
+  return *integer;
 }
 
 std::int64_t read(const Node& node, const Setting<std::int64_t>& setting) {
@@ -242,13 +274,32 @@ bool read(const Node& node, const Setting<bool>& setting) {
   return require_kind(node, setting.key, Kind::boolean, setting.describe_allowed()).boolean;
 }
 
+// Returns the command that lists the valid texts of a setting. Empty if they are not the declared
+// ones, but depend on the document.
+std::string name_list_command(const Node& node, const AnySetting& setting,
+                              const std::vector<std::string>& valid) {
+  if (node.file == nullptr || !node.file->listed_as) {
+    return "";
+  }
+  const auto declared = std::ranges::find(node.declared->settings, setting.key, &AnySetting::key);
+  if (!(*declared)->choices || (*declared)->choices() != valid) {
+    return "";
+  }
+  std::string path = config::join_path(node.path, setting.key);
+  for (std::size_t at = path.find('['); at != std::string::npos; at = path.find('[', at + 1)) {
+    path.erase(at + 1, path.find(']', at) - at - 1);  // requirement[0].quantity
+  }
+  return fmt::format("armwright list settings {}{}", *node.file->listed_as, path);
+}
+
 std::string read(const Node& node, const Setting<std::string>& setting) {
   const Value& value = require_kind(node, setting.key, Kind::string, setting.describe_allowed());
   if (setting.choices) {
     const std::vector<std::string> valid = setting.choices();
     if (std::ranges::find(valid, value.string) == valid.end()) {
       config::fail(value.place, describe_unknown(config::join_path(node.path, setting.key),
-                                                 config::shorten(value.string), valid));
+                                                 config::shorten(value.string), valid,
+                                                 name_list_command(node, setting, valid)));
     }
   }
   return value.string;
@@ -259,8 +310,7 @@ std::vector<double> read(const Node& node, const Setting<std::vector<double>>& s
   const std::string path = config::join_path(node.path, setting.key);
   std::vector<double> numbers;
   for (const Value& item : array.items) {
-    numbers.push_back(
-        read_number(item, fmt::format("{}[{}]", path, numbers.size()), setting.range));
+    numbers.push_back(read_number(item, fmt::format("{}[{}]", path, numbers.size()), setting));
   }
   return numbers;
 }
@@ -422,7 +472,7 @@ ConfigTable ConfigTable::get_table_or_empty(const SettingTable& table) const {
   empty->place = node_->table->place;
   return ConfigTable(
       std::make_shared<Node>(Node{node_->document, empty, config::join_path(node_->path, table.key),
-                                  check_declared(*node_, table)}));
+                                  check_declared(*node_, table), node_->file}));
 }
 
 std::vector<ConfigTable> ConfigTable::get_tables_or_empty(const SettingTable& array) const {
@@ -440,9 +490,11 @@ void ConfigTable::refuse_unknown() const {
   std::stable_sort(unknown.begin(), unknown.end(), [](const Unknown& a, const Unknown& b) {
     return a.value->place.line < b.value->place.line;
   });
+  const std::string list_command =
+      node_->file != nullptr && node_->file->listed_as ? "armwright list settings" : "";
   std::string message;
   for (std::size_t i = 0; i < std::min(unknown.size(), kShown); ++i) {
-    message += (i == 0 ? "" : "\n") + describe_unknown_key(unknown[i]);
+    message += (i == 0 ? "" : "\n") + describe_unknown_key(unknown[i], list_command);
   }
   if (unknown.size() > kShown) {
     message += fmt::format("\nand {} more unknown keys", unknown.size() - kShown);

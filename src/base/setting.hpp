@@ -23,6 +23,10 @@ struct Range {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   bool lower_open = false;  // true: the value must be above `lower`
+
+  bool contains(double value) const {
+    return (lower_open ? value > lower : value >= lower) && value <= upper;
+  }
 };
 
 // The declaration without the type of its default.
@@ -78,6 +82,8 @@ struct SettingTable {
   bool is_array = false;  // true: an array of tables, [[KEY]]
   std::vector<const AnySetting*> settings = {};
   std::vector<const SettingTable*> tables = {};
+  // Of a file whose settings `armwright list settings` lists: the prefix of their names there.
+  std::optional<std::string> listed_as = {};
 };
 
 struct ListedSetting {

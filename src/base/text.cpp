@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <compare>
 #include <cstdint>
+#include <iterator>
 
 namespace armwright {
 namespace {
@@ -29,6 +31,84 @@ std::size_t calc_edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return d.back();
+}
+
+// Returns the name without the differences that find_nearest() ignores.
+std::string fold_name(std::string_view name) {
+  std::string folded;
+  for (const char c : name) {
+    if (std::string_view("-_: ").find(c) == std::string_view::npos) {
+      folded += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+  }
+  return folded;
+}
+
+// How near a candidate is to a name: near ones come first, then the smaller distance of the folded
+// names, then the smaller distance of the names as they are written, then the earlier candidate.
+struct RankedName {
+  bool is_far = true;
+  std::size_t folded_distance = 0;
+  std::size_t written_distance = 0;
+  std::size_t index = 0;
+
+  auto operator<=>(const RankedName&) const = default;
+};
+
+// Compares two folded names.
+RankedName compare_folded(std::string_view name, std::string_view candidate) {
+  const std::size_t length = std::max(name.size(), candidate.size());
+  const std::size_t difference = length - std::min(name.size(), candidate.size());
+  // At most a third of the letters may differ, or one of two letters. Names of one letter match
+  // nothing else.
+  const std::size_t near = length == 2 ? 1 : length / 3;
+  RankedName ranked;
+  if (difference > near) {
+    // The distance is at least the difference. Its computation would take long for long lists from
+    // a file, so names of which none contains the other count as if no letter agreed.
+    const bool contains = candidate.find(name) != std::string_view::npos;
+    ranked.folded_distance = contains ? difference : length;
+    return ranked;
+  }
+  ranked.folded_distance = calc_edit_distance(name, candidate);
+  ranked.is_far = ranked.folded_distance > near;
+  return ranked;
+}
+
+// Returns the `most` candidates that are nearest to the name, the nearest first. Of a name without
+// letters, and of a longer name than 64 bytes, returns the first candidates as far ones: the cost of
+// a distance grows with the product of the lengths.
+std::vector<RankedName> rank_names(std::string_view name, std::span<const std::string> candidates,
+                                   std::size_t most) {
+  constexpr std::size_t kLongestName = 64;
+  const std::string folded = fold_name(name);
+  const bool is_compared = !folded.empty() && name.size() <= kLongestName;
+  std::vector<RankedName> ranked;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    RankedName one;
+    if (is_compared) {
+      const std::string_view candidate = candidates[i];
+      one = compare_folded(folded, fold_name(candidate));
+      const std::size_t colon = candidate.rfind(':');
+      if (colon != std::string_view::npos && name.find(':') == std::string_view::npos) {
+        one = std::min(one, compare_folded(folded, fold_name(candidate.substr(colon + 1))));
+      }
+      one.written_distance = one.is_far ? 0 : calc_edit_distance(name, candidate);
+    }
+    one.index = i;
+    ranked.push_back(one);
+  }
+  const auto end = ranked.begin() + static_cast<std::ptrdiff_t>(std::min(most, ranked.size()));
+  std::partial_sort(ranked.begin(), end, ranked.end());
+  ranked.erase(end, ranked.end());
+  return ranked;
+}
+
+// Returns a name for a message. It can come from a file, and be long and unprintable.
+std::string show_name(std::string_view name) {
+  constexpr std::size_t kLongest_bytes = 100;
+  return name.size() <= kLongest_bytes ? sanitize(name)
+                                       : sanitize(name.substr(0, kLongest_bytes)) + "...";
 }
 
 // Returns the length of the valid UTF-8 sequence at the start of `text`, 0 if there is none.
@@ -84,51 +164,33 @@ std::optional<Number> parse_whole(std::string_view text) {
 
 std::optional<std::string> find_nearest(std::string_view name,
                                         std::span<const std::string> candidates) {
-  // The cost of the distance grows with the product of the lengths, so longer names are not
-  // compared.
-  constexpr std::size_t kLongestName = 64;
-  if (name.size() > kLongestName) {
-    return std::nullopt;
+  const std::vector<RankedName> ranked = rank_names(name, candidates, 1);
+  return ranked.empty() || ranked.front().is_far ? std::nullopt
+                                                 : std::optional(candidates[ranked[0].index]);
+}
+
+std::string list_valid(std::string_view name, std::span<const std::string> valid,
+                       std::string_view list_command) {
+  constexpr std::size_t kMostListed = 12;
+  constexpr std::size_t kNearest = 3;
+  std::vector<std::string> listed;
+  if (valid.size() <= kMostListed) {
+    std::ranges::transform(valid, std::back_inserter(listed), show_name);
+    return listed.empty() ? "(none)" : join(listed, ", ");
   }
-  std::optional<std::string> nearest;
-  std::size_t best = 0;
-  for (const std::string& candidate : candidates) {
-    const std::size_t length = std::max(name.size(), candidate.size());
-    // At most a third of the letters may differ, or one of two letters. Names of one letter match
-    // nothing else.
-    const std::size_t near = length == 2 ? 1 : length / 3;
-    if (length - std::min(name.size(), candidate.size()) > near) {
-      continue;  // the lengths differ too much; this saves time for long lists from a file
-    }
-    const std::size_t distance = calc_edit_distance(name, candidate);
-    if (distance <= near && (!nearest || distance < best)) {
-      nearest = candidate;
-      best = distance;
-    }
+  for (const RankedName& ranked : rank_names(name, valid, kNearest)) {
+    listed.push_back(show_name(valid[ranked.index]));
   }
-  return nearest;
+  return fmt::format("{} and {} more{}", join(listed, ", "), valid.size() - listed.size(),
+                     list_command.empty() ? "" : fmt::format(", which '{}' lists", list_command));
 }
 
 std::string describe_unknown(std::string_view what, std::string_view name,
-                             std::span<const std::string> valid) {
-  // The valid names can come from the same file: there can be many, long and unprintable ones.
-  constexpr std::size_t kMostListed = 200;
-  const auto show = [](std::string_view text) {
-    constexpr std::size_t kLongest_bytes = 100;
-    return text.size() <= kLongest_bytes ? sanitize(text)
-                                         : sanitize(text.substr(0, kLongest_bytes)) + "...";
-  };
+                             std::span<const std::string> valid, std::string_view list_command) {
   const auto nearest = find_nearest(name, valid);
-  std::vector<std::string> listed;
-  for (const std::string& one : valid.first(std::min(valid.size(), kMostListed))) {
-    listed.push_back(show(one));
-  }
-  if (valid.size() > kMostListed) {
-    listed.push_back(fmt::format("and {} more", valid.size() - kMostListed));
-  }
-  return fmt::format("unknown {} '{}'{} Valid: {}", what, show(name),
-                     nearest ? fmt::format("; did you mean '{}'?", show(*nearest)) : ".",
-                     listed.empty() ? "(none)" : join(listed, ", "));
+  return fmt::format("unknown {} '{}'{} Valid: {}", what, show_name(name),
+                     nearest ? fmt::format("; did you mean '{}'?", show_name(*nearest)) : ".",
+                     list_valid(name, valid, list_command));
 }
 
 std::optional<double> parse_finite(std::string_view text) {
@@ -138,6 +200,39 @@ std::optional<double> parse_finite(std::string_view text) {
 
 std::optional<long long> parse_integer(std::string_view text) {
   return parse_whole<long long>(text);
+}
+
+std::optional<long long> parse_count(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789";
+  constexpr long long kMostDigits = 18;  // of an integer of 64 bits, beside the first
+  const std::size_t end = text.find_first_of("eEkM");
+  if (end == std::string_view::npos) {
+    return parse_integer(text);
+  }
+  const std::string_view unit = text.substr(end);
+  std::optional<long long> power;
+  if (unit == "k" || unit == "M") {
+    power = unit == "k" ? 3 : 6;
+  } else if (unit.front() != 'k' && unit.front() != 'M') {
+    power = parse_integer(unit.substr(1));
+  }
+  if (!power || *power < 0 || *power > kMostDigits) {
+    return std::nullopt;
+  }
+  // The decimal point moves to the right by `power` digits.
+  const std::string_view number = text.substr(0, end);
+  const std::size_t point = std::min(number.find('.'), number.size());
+  std::string fraction(number.substr(std::min(point + 1, number.size())));
+  while (fraction.ends_with('0')) {
+    fraction.pop_back();
+  }
+  if (number.find_first_of(kDigits) == std::string_view::npos ||
+      fraction.find_first_not_of(kDigits) != std::string::npos ||
+      fraction.size() > static_cast<std::size_t>(*power)) {
+    return std::nullopt;
+  }
+  fraction.resize(static_cast<std::size_t>(*power), '0');
+  return parse_integer(std::string(number.substr(0, point)) + fraction);
 }
 
 std::vector<std::string> split(std::string_view text, char separator) {

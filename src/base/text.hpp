@@ -10,20 +10,35 @@
 namespace armwright {
 
 // Returns the candidate nearest to `name` by Damerau-Levenshtein distance (optimal string
-// alignment). Returns nothing if more than a third of the letters differ. If several candidates are
-// equally near, returns the first.
+// alignment). Capital letters and the characters - _ : and blank make no difference. A name without
+// ':' is also compared with the part of a candidate behind its last ':' ("cobyla" with
+// "nlopt:cobyla"). Returns nothing if more than a third of the letters differ. If several candidates
+// are equally near, returns the first.
 std::optional<std::string> find_nearest(std::string_view name,
                                         std::span<const std::string> candidates);
 
 // Returns the message for an unknown name: "unknown optimizer 'gaa'; did you mean 'ga'? Valid: ga,
-// random".
+// random". `list_command` is as in list_valid().
 std::string describe_unknown(std::string_view what, std::string_view name,
-                             std::span<const std::string> valid);
+                             std::span<const std::string> valid,
+                             std::string_view list_command = {});
+
+// Returns the valid names in place of `name`: "ga, random". Of more than 12 names it returns the
+// three nearest, how many more there are, and the command that lists them: "ga, de, lhs and 54
+// more, which 'armwright list optimizers' lists". Without such a command, `list_command` is empty.
+std::string list_valid(std::string_view name, std::span<const std::string> valid,
+                       std::string_view list_command = {});
 
 // Return the whole text as a number. Return nothing for blanks around it, a unit after it, a
 // decimal comma, "nan" or "inf".
 std::optional<double> parse_finite(std::string_view text);
 std::optional<long long> parse_integer(std::string_view text);
+
+// Returns the whole text as a count: an integer, also with an exponent (1e3 is 1000), or with k or M
+// for thousands or millions (10k, 1.5M). Computes exactly. Returns nothing for a number that is no
+// integer, for one beyond 64 bits, for a negative exponent, and for a fraction without exponent, k
+// or M.
+std::optional<long long> parse_count(std::string_view text);
 
 std::vector<std::string> split(std::string_view text, char separator);
 std::string join(std::span<const std::string> parts, std::string_view separator);

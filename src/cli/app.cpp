@@ -11,9 +11,11 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <iterator>
 #include <new>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 
 #include "base/build_info.hpp"
 #include "base/error.hpp"
@@ -26,6 +28,7 @@
 #include "cli/terminal/session.hpp"
 #include "cli/terminal/terminal.hpp"
 #include "cli/terminal/typed_flags.hpp"
+#include "process/command_words.hpp"
 #include "sim/simd/simd_level.hpp"
 #include "study/executor/mpi_transport.hpp"
 
@@ -43,7 +46,7 @@ constexpr const char* kFooter = R"(Examples:
   armwright compare --preset smoke                 # compare optimizers, with statistics
   armwright compare q1 --executor slurm            # the same on a cluster, followed by status and merge
   armwright rerun results/q1 q1-complex/ga/r03     # repeat one run of a study and compare all bits
-  armwright evaluate table-a10 --problem q2-e6     # a published design on 500 test cases
+  armwright evaluate table-a10                     # a published design on 500 test cases
   armwright verify table-a10                       # check the design with other engines, time steps and masses
   armwright reproduce                              # the published results of the thesis beside ours
   armwright report results/q1                      # write a page with figures and the arm's motion in 3D
@@ -68,6 +71,21 @@ Exit codes:
 
 Environment: ARMWRIGHT_JOBS, ARMWRIGHT_SEED and ARMWRIGHT_READ_LIMIT are used if --jobs, --seed and --read-limit are not
 given. ARMWRIGHT_CONFIGS names the folder of the shipped configuration. ARMWRIGHT_SIMD limits the instruction set that is chosen without --simd.)";
+
+// What `armwright` alone prints.
+constexpr const char* kGuide =
+    R"(armwright tunes and designs robot arms by simulation. It also optimizes functions, and programs of your own.
+
+Three commands to begin with:
+  armwright list problems                       # what can be optimized
+  armwright optimize irb4600                    # tune a robot arm; the numbers appear here
+  armwright report results/irb4600-auto-seed1   # the tuned arm as a page, with its motion in 3D
+
+Help:
+  armwright --help                              # all commands, with examples
+  armwright COMMAND --help                      # one command: its arguments, flags and examples
+  armwright doctor                              # whether this machine meets the requirements
+)";
 
 // Returns what --version prints: version, commit, compiler, processor, SIMD levels and libraries.
 std::string describe_version() {
@@ -127,6 +145,29 @@ const CLI::App& find_chosen(const CLI::App& app, std::string& name) {
   return *chosen;
 }
 
+// Returns the message for a command of the user that the shell has split, as --optimizer python3
+// mine.py: the words after its first one are left over. Empty if there is none.
+std::string describe_split_command(const CLI::App& chosen, const std::vector<std::string>& extras) {
+  for (const auto& [option, kind, flag] : {std::tuple{"--optimizer", "optimizer", "--optimizer "},
+                                           std::tuple{"PROBLEM", "problem", ""}}) {
+    const CLI::Option* const found = chosen.get_option_no_throw(option);
+    if (found == nullptr || found->count() == 0 || !is_interpreter(found->results().front())) {
+      continue;
+    }
+    std::vector<std::string> words = {found->results().front()};
+    const CLI::Option* const problem = chosen.get_option_no_throw("PROBLEM");
+    const bool has_taken_script = problem != nullptr && problem != found && problem->count() > 0 &&
+                                  !suggest_exec(problem->results().front()).empty();
+    if (has_taken_script) {
+      words.push_back(problem->results().front());
+    } else {
+      std::ranges::copy(extras, std::back_inserter(words));
+    }
+    return describe_missing_exec(kind, join(words, " "), flag);
+  }
+  return "";
+}
+
 // Returns what is wrong with the command line. The parser's own messages are less helpful.
 std::string describe_mistake(const CLI::App& app, const CLI::ParseError& error) {
   std::string name;
@@ -136,6 +177,10 @@ std::string describe_mistake(const CLI::App& app, const CLI::ParseError& error) 
   const auto flag = std::find_if(extras.begin(), extras.end(), [](const std::string& text) {
     return text.size() > 1 && text[0] == '-';
   });
+  if (const std::string split = describe_split_command(chosen, extras);
+      !extras.empty() && !split.empty()) {
+    return split + see;
+  }
   const auto commands = list_commands(chosen);
   if (!commands.empty() && !extras.empty() && flag != extras.begin()) {
     return describe_unknown("command", extras.front(), commands) + see;
@@ -145,7 +190,7 @@ std::string describe_mistake(const CLI::App& app, const CLI::ParseError& error) 
     return describe_unknown("flag", typed, list_flags(chosen)) + see;
   }
   if (!commands.empty()) {
-    return fmt::format("a command is missing. Valid: {}", join(commands, ", ")) + see;
+    return fmt::format("a command is missing. Valid: {}", list_valid("", commands)) + see;
   }
   if (!extras.empty()) {
     return fmt::format("unexpected argument '{}'", sanitize(extras.front())) + see;
@@ -183,6 +228,10 @@ void apply_read_limit(const CLI::App& app, Session& session) {
 }
 
 int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
+  if (argc == 1) {
+    write_stdout(kGuide);
+    return exit_code::kDone;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

@@ -2,12 +2,61 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "base/text.hpp"
 
 namespace armwright {
+namespace {
+
+struct Interpreter {
+  std::string_view name;
+  std::string_view extension;  // of its scripts
+};
+// The first row of an extension runs scripts that are named without an interpreter.
+constexpr Interpreter kInterpreters[] = {
+    {"python3", ".py"}, {"python", ".py"}, {"julia", ".jl"}, {"Rscript", ".R"}, {"bash", ".sh"},
+    {"sh", ".sh"},      {"node", ".js"},   {"octave", ".m"}, {"perl", ".pl"},   {"ruby", ".rb"}};
+
+const Interpreter* find_interpreter_of(std::string_view script) {
+  const auto found = std::ranges::find_if(kInterpreters, [&](const Interpreter& one) {
+    return script.size() > one.extension.size() && script.ends_with(one.extension);
+  });
+  return found == std::end(kInterpreters) ? nullptr : found;
+}
+
+}  // namespace
+
+bool is_interpreter(std::string_view word) {
+  return std::ranges::find(kInterpreters, word, &Interpreter::name) != std::end(kInterpreters);
+}
+
+std::string suggest_exec(std::string_view text) {
+  const std::size_t blank = text.find(' ');
+  const std::string_view first = text.substr(0, blank);
+  const Interpreter* const script = find_interpreter_of(first);
+  if (script != nullptr) {
+    const std::string_view plain = text.starts_with("./") ? text.substr(2) : text;
+    return fmt::format("exec:{} {}", script->name, plain);
+  }
+  if (!is_interpreter(first)) {
+    return "";
+  }
+  const auto* const row = std::ranges::find(kInterpreters, first, &Interpreter::name);
+  return blank == std::string_view::npos ? fmt::format("exec:{} mine{}", first, row->extension)
+                                         : fmt::format("exec:{}", text);
+}
+
+std::string describe_missing_exec(std::string_view kind, std::string_view text,
+                                  std::string_view flag) {
+  return fmt::format(
+      "unknown {} '{}'; a program of your own needs exec: before its command, as in {}\"{}\"", kind,
+      sanitize(text), flag, sanitize(suggest_exec(text)));
+}
 
 std::vector<std::string> split_command(std::string_view command, std::string_view kind) {
   std::vector<std::string> words;

@@ -146,6 +146,47 @@ inline = {x = 1}
             "q1.toml:6: list[0] is 1, an integer; it must be a string");
 }
 
+TEST(Config, CountsMayHaveAnExponentOrKOrMAndAreRecordedAsIntegers) {
+  const ConfigTable config = ConfigTable::parse("a = 1e3\nb = \"10k\"\n[[t]]\nc = 2.5e3\n",
+                                                "q1.toml", std::vector<std::string>{"d=2M"});
+  EXPECT_EQ(config.get(integer("a")), 1000);
+  EXPECT_EQ(config.get(integer("b")), 10'000);
+  EXPECT_EQ(config.get_tables(array("t"))[0].get(integer("c")), 2500);
+  EXPECT_EQ(config.get(integer("d")), 2'000'000);
+  EXPECT_EQ(config.to_json(), R"({"a":1000,"b":10000,"d":2000000,"t":[{"c":2500}]})");
+  for (const char* value : {"1.0", "1.5", "1e-3", "1e19", "\"1000\"", "\"1.2345k\"", "\"k\""}) {
+    EXPECT_EQ(usage_error_of([&] {
+                parse(fmt::format("a = {}\n", value)).get(integer("a", {.lower = 1, .upper = 9}));
+              }),
+              fmt::format("q1.toml:1: a is {}, {}; it must be an integer from 1 to 9", value,
+                          value[0] == '"' ? "a string" : "a floating-point number"));
+  }
+  EXPECT_EQ(usage_error_of([&] { parse("a = 1e3\n").get(integer("a", {.lower = 1, .upper = 9})); }),
+            "q1.toml:1: a is 1e3; it must be an integer from 1 to 9");
+}
+
+TEST(Config, AsksWhetherATooLargeLengthIsInMillimetres) {
+  const Range range{.lower = 0.001, .upper = 100};
+  EXPECT_EQ(
+      usage_error_of([&] { parse("radius_m = 450\n").get(number("radius_m", range)); }),
+      "q1.toml:1: radius_m is 450; it must be a finite number >= 0.001 and <= 100; 450 m: were "
+      "millimetres meant? Then write 0.45");
+  EXPECT_EQ(
+      usage_error_of([&] {
+        parse("centre_m = [0.5, -5000]\n")
+            .get(numbers("centre_m", {.lower = -1000, .upper = 1000}));
+      }),
+      "q1.toml:1: centre_m[1] is -5000; it must be a finite number >= -1000 and <= 1000; -5000 m: "
+      "were millimetres meant? Then write -5");
+  // A thousandth of it is not in the range either, and torques are not in millimetres.
+  for (const char* key : {"radius_m = 450000", "radius_m = -1", "torque_n_m = 450"}) {
+    const std::string name(key, std::string(key).find(' '));
+    EXPECT_THAT(
+        usage_error_of([&] { parse(std::string(key) + "\n").get(number(name.c_str(), range)); }),
+        testing::EndsWith("and <= 100"));
+  }
+}
+
 TEST(Config, NamesTheElementOfAnArrayAndItsOwnLine) {
   const ConfigTable config = parse("gains = [1,\n 2,\n -3]\n");
   EXPECT_EQ(usage_error_of([&] { config.get(numbers("gains", {.lower = 0})); }),
@@ -200,6 +241,42 @@ TEST(Config, ListsTheChoicesAndTheNearest) {
   EXPECT_EQ(
       usage_error_of([&] { optimizer.get(choice("other", kKinds, "ga")); }),
       "q1.toml:3: optimizer.other is 3, an integer; it must be one of these strings: ga, random");
+}
+
+TEST(Config, NamesTheCommandThatListsManyChoicesAndKeys) {
+  std::vector<std::string> words;
+  for (int i = 1; i <= 13; ++i) {
+    words.push_back(fmt::format("word{}", i));
+  }
+  const Setting<std::string> quantity{"quantity", one_of(words), kNoDefault, ""};
+  const SettingTable one{.key = "one", .is_array = true, .settings = {&quantity}};
+  const SettingTable file{.key = "", .tables = {&one}, .listed_as = "study:"};
+  const ConfigTable table =
+      ConfigTable::parse(file, "[[one]]\nquantity = \"word\"\n", "q1.toml").get_tables(one)[0];
+  EXPECT_EQ(usage_error_of([&] { table.get(quantity); }),
+            "q1.toml:2: unknown one[0].quantity 'word'; did you mean 'word1'? Valid: word1, word2, "
+            "word3 and 10 more, which 'armwright list settings study:one[].quantity' lists");
+  // Choices that depend on the document are not listed there.
+  words.push_back("word14");
+  EXPECT_THAT(usage_error_of([&] { table.get(quantity.among(words)); }),
+              testing::EndsWith("word3 and 11 more"));
+
+  std::vector<Setting<double>> settings;
+  SettingTable many{.key = "", .listed_as = ""};
+  for (const std::string& word : words) {
+    settings.emplace_back(word, std::nullopt, "");
+  }
+  for (const Setting<double>& setting : settings) {
+    many.settings.push_back(&setting);
+  }
+  const ConfigTable flat = ConfigTable::parse(many, "wurd7 = 1\n", "q1.toml");
+  for (const Setting<double>& setting : settings) {
+    flat.has(setting);
+  }
+  EXPECT_EQ(
+      usage_error_of([&] { flat.refuse_unknown(); }),
+      "q1.toml:1: unknown key wurd7; did you mean 'word7'? Valid here: word7, word1, word2 and "
+      "11 more, which 'armwright list settings' lists");
 }
 
 TEST(Config, RefusesEveryKeyNobodyAskedFor) {

@@ -24,7 +24,7 @@ inline Setting<double> number(const char* key, Range range = {},
   return {key, range, fallback, ""};
 }
 
-inline Setting<std::int64_t> integer(const char* key, Range range,
+inline Setting<std::int64_t> integer(const char* key, Range range = {},
                                      std::optional<std::int64_t> fallback = {}) {
   return {key, range, fallback, ""};
 }

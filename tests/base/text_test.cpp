@@ -48,6 +48,38 @@ TEST(Text, DescribesUnknownNames) {
             "unknown optimizer 'x?[31m'. Valid: (none)");
 }
 
+TEST(Text, FindsNamesWithOtherCapitalsAndSeparators) {
+  const std::vector<std::string> names = {"cmaes",        "pagmo:cmaes",   "nlopt:neldermead",
+                                          "nlopt:cobyla", "speed_m_per_s", "Speed_m_per_s"};
+  EXPECT_EQ(find_nearest("CMA-ES", names), "cmaes");
+  EXPECT_EQ(find_nearest("Nelder-Mead", names), "nlopt:neldermead");
+  EXPECT_EQ(find_nearest("nelder mead", names), "nlopt:neldermead");
+  EXPECT_EQ(find_nearest("NLOPT:Cobyla", names), "nlopt:cobyla");
+  EXPECT_EQ(find_nearest("cobyla", names), "nlopt:cobyla");  // behind the ':'
+  EXPECT_EQ(find_nearest("pagmo cma-es", names), "pagmo:cmaes");
+  EXPECT_EQ(find_nearest("Speed_m_per_S", names), "Speed_m_per_s");  // the nearer as it is written
+  EXPECT_EQ(find_nearest("--", names), std::nullopt);
+}
+
+TEST(Text, NamesTheThreeNearestOfMoreThanTwelveNames) {
+  std::vector<std::string> names = {"auto", "ga", "gaco", "cmaes"};
+  for (int i = 5; i <= 12; ++i) {
+    names.push_back("random" + std::to_string(i));
+  }
+  EXPECT_EQ(
+      describe_unknown("optimizer", "gacoo", names, "armwright list optimizers"),
+      "unknown optimizer 'gacoo'; did you mean 'gaco'? Valid: auto, ga, gaco, cmaes, random5, "
+      "random6, random7, random8, random9, random10, random11, random12");
+  names.push_back("random13");
+  EXPECT_EQ(describe_unknown("optimizer", "gaa", names, "armwright list optimizers"),
+            "unknown optimizer 'gaa'; did you mean 'ga'? Valid: ga, gaco, auto and 10 more, which "
+            "'armwright list optimizers' lists");
+  EXPECT_EQ(describe_unknown("joint", "cma", names),
+            "unknown joint 'cma'. Valid: ga, cmaes, auto and 10 more");
+  EXPECT_EQ(list_valid("", names), "auto, ga, gaco and 10 more");
+  EXPECT_EQ(list_valid(std::string(65, 'r'), names), "auto, ga, gaco and 10 more");
+}
+
 TEST(Text, ParsesFiniteNumbersOnly) {
   EXPECT_EQ(parse_finite("1.5"), 1.5);
   EXPECT_EQ(parse_finite("+1"), 1.0);
@@ -69,6 +101,57 @@ TEST(Text, ParsesWholeIntegersOnly) {
   for (const char* text :
        {"", " 1", "1 ", "1.0", "1e3", "+-1", "0x10", "9223372036854775808", "1_000"}) {
     EXPECT_EQ(parse_integer(text), std::nullopt) << "'" << text << "'";
+  }
+}
+
+TEST(Text, ParsesCountsExactly) {
+  const std::pair<const char*, long long> counts[] = {
+      {"42", 42},
+      {"+42", 42},
+      {"-3", -3},
+      {"1e3", 1000},
+      {"1E3", 1000},
+      {"1e+3", 1000},
+      {"10k", 10'000},
+      {"2M", 2'000'000},
+      {"1.5k", 1500},
+      {"0.25M", 250'000},
+      {"1.50e1", 15},
+      {".5k", 500},
+      {"-1k", -1000},
+      {"1e18", 1'000'000'000'000'000'000},
+      {"9223372036854775.807k", 9'223'372'036'854'775'807}};
+  for (const auto& [text, count] : counts) {
+    EXPECT_EQ(parse_count(text), count) << text;
+  }
+  for (const char* text : {"",
+                           "1.5",
+                           "1.0",
+                           "1e-3",
+                           "1000e-3",
+                           "1.5e0",
+                           "1.2345k",
+                           "1e",
+                           "e3",
+                           "k",
+                           "1kk",
+                           "1k5",
+                           "1e3k",
+                           "1K",
+                           "1m",
+                           "1G",
+                           " 1k",
+                           "1 k",
+                           "1_0k",
+                           "1.5.0k",
+                           "1e19",
+                           "10e18",
+                           "9300000000000000M",
+                           "0x1e3",
+                           "1e3.0",
+                           "+-1k",
+                           "ten"}) {
+    EXPECT_EQ(parse_count(text), std::nullopt) << "'" << text << "'";
   }
 }
 

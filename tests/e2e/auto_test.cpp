@@ -63,6 +63,18 @@ TEST_F(CliAuto, RulesOfTheUserHoldAndARunWithOthersIsRefused) {
                                     HasSubstr("must have an optimizer for every problem")));
 }
 
+TEST_F(CliAuto, AContinuedRunKeepsItsChoice) {
+  const std::vector<std::string> words = {"optimize", "branin", "--optimizer", "auto", "--budget"};
+  ASSERT_EQ(run(words + std::vector<std::string>{"60"}).exit_code, 0);
+  const Outcome continued = run(words + std::vector<std::string>{"220"});
+  ASSERT_EQ(continued.exit_code, 0) << continued.err;
+  EXPECT_THAT(continued.err,
+              AllOf(HasSubstr("continuing with a budget of 220 in place of 60"),
+                    HasSubstr("kept turbo, which auto chose for 2 variables, 1 objective and 60 "
+                              "evaluations.")));
+  EXPECT_THAT(run({"show", "results/branin-auto-seed1"}).out, HasSubstr("kept turbo, which auto"));
+}
+
 TEST_F(CliAuto, ListShowsItsRules) {
   const std::string text = run({"list", "optimizers", "auto"}).out;
   EXPECT_THAT(text, AllOf(HasSubstr("pagmo:maco"), HasSubstr("variables <= 25"),

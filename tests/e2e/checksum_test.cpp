@@ -34,9 +34,9 @@ class Checksums : public testing::Test {
   }
   void make_run() {
     const Outcome outcome =
-        run({"optimize", "q1-complex", "--engine", "articulated", "--budget", "70", "--set",
-             "sets.test_cases=3", "--set", "sets.validation_cases=2", "--set", "task.load_kg=5",
-             "--out", "run", "--quiet"});
+        run({"optimize", "q1-complex", "--optimizer", "ga", "--engine", "articulated", "--budget",
+             "70", "--set", "sets.test_cases=3", "--set", "sets.validation_cases=2", "--set",
+             "task.load_kg=5", "--out", "run", "--quiet"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
   void replace(const std::string& file, const std::string& from, const std::string& to) {
@@ -230,9 +230,9 @@ TEST_F(Checksums, ALostJudgementIsFoundAndJudgedAgain) {
     EXPECT_THAT(find_damage("run", "journal"), HasSubstr("lost: 1 of the judgements"));
     ASSERT_EQ(run({"doctor", "run", "--repair"}).exit_code, 0);
     const Outcome resumed =
-        run({"optimize", "q1-complex", "--engine", "articulated", "--budget", "70", "--set",
-             "sets.test_cases=3", "--set", "sets.validation_cases=2", "--set", "task.load_kg=5",
-             "--out", "run.repaired", "--quiet"});
+        run({"optimize", "q1-complex", "--optimizer", "ga", "--engine", "articulated", "--budget",
+             "70", "--set", "sets.test_cases=3", "--set", "sets.validation_cases=2", "--set",
+             "task.load_kg=5", "--out", "run.repaired", "--quiet"});
     EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
     EXPECT_EQ(read_text(folder_ / "run.repaired/result.json"), result);
     std::filesystem::remove_all(folder_ / "run.repaired");

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -90,9 +91,16 @@ TEST_F(Cli, NamesTheNearestOfWhatItDoesNotKnow) {
                  {"unknown flag '--sed'; did you mean '--seed'?"});
   expect_refused({"testset", "expot", "x"}, 2, {"unknown command 'expot'; did you mean 'export'?"});
   expect_refused({"optimize", "spere"}, 2,
-                 {"unknown problem 'spere'; did you mean 'sphere'?", "q2-e6"});
+                 {"unknown problem 'spere'; did you mean 'sphere'?", "Valid: sphere, ",
+                  "which 'armwright list problems' lists"});
   expect_refused({"optimize", "sphere", "--optimizer", "gaa"}, 2,
-                 {"unknown optimizer 'gaa'; did you mean 'ga'?", "random"});
+                 {"unknown optimizer 'gaa'; did you mean 'ga'?",
+                  "more, which 'armwright list optimizers' lists"});
+  expect_refused({"optimize", "sphere", "--optimizer", "CMA-ES"}, 2, {"did you mean 'cmaes'?"});
+  expect_refused({"optimize", "sphere", "--optimizer", "Nelder-Mead"}, 2,
+                 {"did you mean 'nlopt:neldermead'?"});
+  expect_refused({"optimize", "sphere", "--optimizer", "NLOPT:Cobyla"}, 2,
+                 {"did you mean 'nlopt:cobyla'?"});
   expect_refused({"optimize", "sphere", "--optimizer", "ga", "--opt", "populaton=4"}, 2,
                  {"unknown option 'populaton'; did you mean 'population'?"});
   expect_refused({"optimize", "q1-complex", "--engine", "od"}, 2,
@@ -106,14 +114,93 @@ TEST_F(Cli, NamesTheNearestOfWhatItDoesNotKnow) {
   expect_refused({"list", "optimizer"}, 2,
                  {"unknown kind 'optimizer'; did you mean 'optimizers'?"});
   expect_refused({"list", "signals", "stepp"}, 2, {"unknown signal 'stepp'; did you mean 'step'?"});
-  expect_refused({}, 2, {"a command is missing", "reproduce"});
+  expect_refused({"testset"}, 2, {"a command is missing. Valid: export"});
   expect_refused({"list", "signals", "step", "more"}, 2, {"unexpected argument 'more'"});
   expect_refused({"optimize"}, 2, {"PROBLEM is required", "armwright optimize --help"});
 }
 
+TEST_F(Cli, AloneItPrintsAShortGuide) {
+  const Outcome outcome = run({});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_LE(std::ranges::count(outcome.out, '\n'), 15);
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("armwright list problems"), HasSubstr("armwright optimize irb4600"),
+                    HasSubstr("armwright report results/"), HasSubstr("armwright --help")));
+}
+
+TEST_F(Cli, ACommandOfTheUserIsAnsweredWithExec) {
+  write("mine.py", "");
+  const auto expect_optimizer = [&](const std::vector<std::string>& words, const char* command) {
+    expect_refused(std::vector<std::string>{"optimize"} + words, 2,
+                   {"a program of your own needs exec: before its command, as in --optimizer \"" +
+                    std::string(command) + "\""});
+  };
+  expect_optimizer({"sphere", "--optimizer", "python3", "mine.py"}, "exec:python3 mine.py");
+  expect_optimizer({"--optimizer", "python3", "mine.py"}, "exec:python3 mine.py");
+  expect_optimizer({"--optimizer", "python3", "mine.py", "sphere"}, "exec:python3 mine.py");
+  expect_optimizer({"sphere", "--optimizer", "python3", "-u", "mine.py"},
+                   "exec:python3 -u mine.py");
+  expect_optimizer({"sphere", "--optimizer", "python3 mine.py"}, "exec:python3 mine.py");
+  expect_optimizer({"sphere", "--optimizer", "mine.py"}, "exec:python3 mine.py");
+  expect_optimizer({"sphere", "--optimizer", "./mine.py"}, "exec:python3 mine.py");
+  expect_optimizer({"sphere", "--optimizer", "python3"}, "exec:python3 mine.py");
+  const auto expect_problem = [&](const std::vector<std::string>& words) {
+    expect_refused(std::vector<std::string>{"optimize"} + words, 2,
+                   {"unknown problem ",
+                    "a program of your own needs exec: before its command, as "
+                    "in \"exec:python3 mine.py\""});
+  };
+  expect_problem({"python3 mine.py"});
+  expect_problem({"python3", "mine.py"});
+  expect_problem({"mine.py"});
+  expect_problem({"./mine.py"});
+}
+
+TEST_F(Cli, CountsMayBeWrittenWithAnExponentOrKOrM) {
+  const Outcome outcome = run({"optimize", "sphere", "--optimizer", "ga", "--opt",
+                               "population=0.02k", "--budget", "1e2", "--schedule", "fixed:1e0",
+                               "--set", "sets.test_cases=1e0", "--json", "--out", "run"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("budget 100 cases, schedule fixed:1,"));
+  // The same numbers in other words are the same run.
+  EXPECT_THAT(run({"optimize", "sphere", "--optimizer", "ga", "--opt", "population=20", "--budget",
+                   "100", "--set", "sets.test_cases=1", "--json", "--out", "run"})
+                  .err,
+              HasSubstr("this run is complete"));
+  expect_refused({"optimize", "sphere", "--budget", "1.5"}, 2,
+                 {"--budget is '1.5'; it must be an integer from 1 to 1000000000000; 1e3, 10k and "
+                  "2M are integers too"});
+  expect_refused({"optimize", "sphere", "--budget", "1e-3"}, 2, {"--budget is '1e-3'"});
+  expect_refused({"optimize", "sphere", "--budget", "2000000M"}, 2, {"--budget is '2000000M'"});
+}
+
+TEST_F(Cli, AsksWhetherALengthIsInMillimetres) {
+  expect_refused({"optimize", "q1-complex", "--set", "workspace.radius_m=450"}, 2,
+                 {"450 m: were millimetres meant? Then write 0.45"});
+  const Outcome far = run({"evaluate", "table-a5", "--problem", "q1-complex", "--cases", "1",
+                           "--set", "workspace.centre_m=[900,0,500]"});
+  EXPECT_THAT(far.out + far.err, HasSubstr("were millimetres meant?"));
+}
+
+TEST_F(Cli, NamesTheVariablesOfTheWinnerThatLieAtABound) {
+  const Outcome outcome =
+      run({"optimize", "q1-complex", "--optimizer", "ga", "--engine", "articulated", "--budget",
+           "30", "--schedule", "fixed:1", "--set", "variables.bounds_factor=1.0001", "--set",
+           "sets.test_cases=1", "--validation-cases", "1"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr(" bound ("),
+                    HasSubstr("; if the bound is not physical, widen the box with --set "
+                              "variables.bounds_factor=10.001 (it is 1.0001)")));
+  // The page of the run and what the terminal calls Next.
+  EXPECT_THAT(outcome.out, HasSubstr("Next\n  "));
+  EXPECT_LT(outcome.out.find(" report results/"), outcome.out.find(" show results/"));
+}
+
 TEST_F(Cli, RefusesWrongValuesAndSaysWhatIsAllowed) {
   const auto refuse = [&](std::vector<std::string> flags, const std::vector<std::string>& parts) {
-    flags.insert(flags.begin(), {"optimize", "q1-complex"});
+    flags.insert(flags.begin(), {"optimize", "q1-complex", "--optimizer", "ga"});
     expect_refused(flags, 2, parts);
   };
   refuse({"--seed", "1.5"}, {"--seed", "'1.5'", "an integer from 0 to"});
@@ -131,7 +218,8 @@ TEST_F(Cli, RefusesWrongValuesAndSaysWhatIsAllowed) {
   refuse({"--engine", "ode", "--set", "physics.engine=ode"},
          {"--set physics.engine=ode", "give only one"});
   refuse({"--engine", "ode", "--simd", "scalar"}, {"--simd scalar: ", "'ode' has none to choose"});
-  refuse({"--precision", "float"}, {"--precision float: ", "'ode' always computes in double"});
+  refuse({"--engine", "ode", "--precision", "float"},
+         {"--precision float: ", "'ode' always computes in double"});
   refuse({"--tip", "tol"}, {"error: --tip tol: ", ".urdf: unknown link 'tol'"});
   expect_refused({"optimize", "sphere", "--simd", "scalar"}, 2,
                  {"error: --simd scalar: this problem has no setting physics.simd"});
@@ -226,8 +314,7 @@ TEST_F(Cli, ExplainsAProblem) {
 
 TEST_F(Cli, EvaluatesTheOracleCases) {
   const std::string file = std::string(ARMWRIGHT_TEST_DATA) + "/tracking-oracle.json";
-  const Outcome outcome =
-      run({"evaluate", "table-a5", "--problem", "q1-complex", "--test-cases", file, "--json"});
+  const Outcome outcome = run({"evaluate", "table-a5", "--test-cases", file, "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const json answer = json::parse(outcome.out);
   ASSERT_EQ(answer.at("cases").size(), 3);
@@ -262,9 +349,10 @@ TEST_F(Cli, EvaluatesDesignsOfAnyController) {
   const std::string made_with = "control.controller=pid_computed_torque";
   const std::string folder = folder_.path() / "run";
   const Outcome made =
-      run({"optimize", "q2-e6", "--set", made_with, "--engine", "articulated", "--budget", "35",
-           "--set", "sets.test_cases=2", "--set", "sets.validation_cases=1", "--out", folder});
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+      run({"optimize", "q2-e6", "--optimizer", "ga", "--set", made_with, "--engine", "articulated",
+           "--budget", "35", "--set", "sets.test_cases=2", "--set", "sets.validation_cases=1",
+           "--out", folder});
+  ASSERT_TRUE(has_ended(made)) << made.err;
   std::vector<std::string> evaluate = {"evaluate", folder + "/winner.toml", "--problem", "q2-e6",
                                        "--engine", "articulated",           "--cases",   "2",
                                        "--json"};
@@ -335,9 +423,10 @@ TEST_F(Cli, ReproducesOneTable) {
       run({"reproduce", "--cases", "3", "--table", "A.10", "--csv", "-", "--quiet"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
-  EXPECT_THAT(outcome.out, AllOf(StartsWith("label,design,problem,set,published_error_m,cases,"),
-                                 HasSubstr("\nA.10 (E6),table-a10,q2-e6,,8.3e-05,3,"),
-                                 HasSubstr("task.load_kg=20"), Not(HasSubstr("table-a5"))));
+  EXPECT_THAT(outcome.out,
+              AllOf(StartsWith("label,design,problem,set,published_error_m,cases,"),
+                    HasSubstr("\nA.10 (E6),table-a10,q2-e6,physics.engine=ode,8.3e-05,3,"),
+                    HasSubstr("task.load_kg=20"), Not(HasSubstr("table-a5"))));
 }
 
 TEST_F(Cli, KeepsAReproductionAndGoesOnWithIt) {

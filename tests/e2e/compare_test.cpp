@@ -61,6 +61,8 @@ TEST(CliCompare, KillsInTheMiddleAndAnyNumberOfProcessesChangeNoTable) {
   EXPECT_EQ(last.exit_code, 0) << last.err;
   EXPECT_EQ(read_study(folder / "one"), read_study(folder / "killed"));
   EXPECT_THAT(one.out, HasSubstr("Verdict"));
+  EXPECT_THAT(one.out, testing::ContainsRegex("Next\n  [^\n]*armwright report one\n  "
+                                              "[^\n]*armwright show one\n$"));
 }
 
 TEST(CliCompare, InterruptedItSaysHowToGoOn) {
@@ -80,7 +82,7 @@ TEST(CliCompare, ADryRunPrintsThePlanAndRunsNothing) {
   const Outcome outcome = run_program(folder.path(), {"compare", "--preset", "smoke", "--dry-run"});
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.out, HasSubstr("plan_sha256 = \""));
-  EXPECT_THAT(outcome.err, HasSubstr("64 cells"));
+  EXPECT_THAT(outcome.err, HasSubstr("80 cells"));
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
@@ -122,7 +124,7 @@ TEST(CliCompare, TheShippedStudiesAreListedAndExplained) {
     EXPECT_THAT(list.out, HasSubstr(name));
     const Outcome one = run_program(folder.path(), {"list", "studies", name});
     EXPECT_EQ(one.exit_code, 0) << one.err;
-    EXPECT_THAT(one.out, testing::ContainsRegex("\nbaselines +random"));
+    EXPECT_THAT(one.out, testing::ContainsRegex("\nbaselines +start, random"));
   }
 }
 

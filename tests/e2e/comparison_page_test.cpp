@@ -27,9 +27,9 @@ class CliComparison : public testing::Test {
          "--quiet"});
   }
   void make_arm_run(const std::string& out, std::vector<std::string> more) {
-    std::vector<std::string> words = {"optimize", "q1-complex", "--engine",         "articulated",
-                                      "--budget", "30",         "--quiet",          "--out",
-                                      out,        "--set",      "sets.test_cases=7"};
+    std::vector<std::string> words = {
+        "optimize", "q1-complex", "--optimizer", "ga", "--engine", "articulated",      "--budget",
+        "30",       "--quiet",    "--out",       out,  "--set",    "sets.test_cases=7"};
     words.insert(words.end(), more.begin(), more.end());
     run(words);
   }

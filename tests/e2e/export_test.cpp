@@ -83,9 +83,10 @@ class Export : public testing::Test {
       }
     }
     std::filesystem::create_directories(*folder_ / "study/cells/0/label/3");
-    const Outcome outcome = run({"optimize", "q1-complex", "--engine", "articulated", "--simd",
-                                 "sse2", "--budget", "70", "--set", "sets.validation_cases=3",
-                                 "--set", "sets.test_cases=4", "--out", "arm"});
+    const Outcome outcome =
+        run({"optimize", "q1-complex", "--optimizer", "ga", "--engine", "articulated", "--simd",
+             "sse2", "--budget", "70", "--set", "sets.validation_cases=3", "--set",
+             "sets.test_cases=4", "--out", "arm"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
   static void TearDownTestSuite() { folder_.reset(); }

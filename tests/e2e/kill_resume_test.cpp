@@ -29,15 +29,16 @@ struct Setting {
 
 std::vector<std::string> make_command(const Setting& setting, const std::string& out,
                                       const std::string& jobs) {
-  return {"optimize",   "q1-complex",
-          "--engine",   setting.engine,
-          "--schedule", setting.schedule,
-          "--racing",   setting.racing,
-          "--budget",   setting.budget,
-          "--set",      "sets.test_cases=8",
-          "--jobs",     jobs,
-          "--set",      "sets.validation_cases=5",
-          "--out",      out,
+  return {"optimize",    "q1-complex",
+          "--optimizer", "ga",
+          "--engine",    setting.engine,
+          "--schedule",  setting.schedule,
+          "--racing",    setting.racing,
+          "--budget",    setting.budget,
+          "--set",       "sets.test_cases=8",
+          "--jobs",      jobs,
+          "--set",       "sets.validation_cases=5",
+          "--out",       out,
           "--quiet"};
 }
 

@@ -129,9 +129,12 @@ TEST_P(MpiRuns, WriteTheSameOnAnyNumberOfRanksAndThreads) {
                                       jobs,       "--out",
                                       out};
     words.insert(words.end(), GetParam().words.begin(), GetParam().words.end());
+    if (std::ranges::count(words, "--optimizer") == 0) {
+      words.insert(words.end(), {"--optimizer", "ga"});
+    }
     return words;
   };
-  ASSERT_EQ(run_program(folder_.path(), make_command("one", "1")).exit_code, 0);
+  ASSERT_TRUE(has_ended(run_program(folder_.path(), make_command("one", "1"))));
   const auto expected = read_run(folder_ / "one");
   ASSERT_EQ(run_program(folder_.path(), make_command("two", "2")).exit_code, 0);
   EXPECT_EQ(read_run(folder_ / "two"), expected);
@@ -217,12 +220,14 @@ TEST_P(MpiUserProblem, ComparesOptimizersWithTheSameBytesForAnyThreadsAndRanks) 
 
 // Evaluations of several milliseconds each.
 std::vector<std::string> make_long_command(const std::string& out) {
-  return {"optimize", "q1-complex",
-          "--budget", "210",
-          "--set",    "sets.test_cases=8",
-          "--set",    "sets.validation_cases=5",
-          "--jobs",   "1",
-          "--out",    out};
+  return {"optimize",    "q1-complex",
+          "--optimizer", "ga",
+          "--engine",    "ode",
+          "--budget",    "210",
+          "--set",       "sets.test_cases=8",
+          "--set",       "sets.validation_cases=5",
+          "--jobs",      "1",
+          "--out",       out};
 }
 
 TEST_F(Mpi, RanksThatDieOrHangChangeNothing) {
@@ -377,8 +382,10 @@ TEST_F(Mpi, WhatIsSaidIsSaidOnce) {
   EXPECT_EQ(list.exit_code, 0);
   EXPECT_EQ(count(list.out, "Open Dynamics Engine"), 1u);
   EXPECT_THAT(list.err, HasSubstr("only the first of 3 ranks works"));
-  const Outcome optimized = run_program(
-      folder_.path(), {"optimize", "sphere", "--budget", "100", "--out", "run"}, make_ranks(2, {}));
+  const Outcome optimized =
+      run_program(folder_.path(),
+                  {"optimize", "sphere", "--optimizer", "ga", "--budget", "100", "--out", "run"},
+                  make_ranks(2, {}));
   EXPECT_EQ(optimized.exit_code, 0) << optimized.err;
   EXPECT_EQ(count(optimized.err, "on each of 2 ranks"), 1u) << optimized.err;
   EXPECT_THAT(optimized.err, HasSubstr("without mpirun's --enable-recovery"));

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -40,7 +41,8 @@ class CliOptimize : public testing::Test {
     ASSERT_TRUE(program.is_running());
   }
   TemporaryFolder folder_;
-  const std::vector<std::string> sphere_ = {"optimize", "sphere", "--budget", "300"};
+  const std::vector<std::string> sphere_ = {"optimize", "sphere",   "--optimizer",
+                                            "ga",       "--budget", "300"};
 };
 
 TEST_F(CliOptimize, MakesARunOnceAndFindsItAgain) {
@@ -72,6 +74,31 @@ TEST_F(CliOptimize, MakesARunOnceAndFindsItAgain) {
               HasSubstr("Judged on the validation set"));
 }
 
+// The problem of the first tutorial: the numbers of its run are those of perturbed plants, and the
+// winner is better than the start on them.
+TEST_F(CliOptimize, JudgesTheArmOfTheFirstTutorialOnPerturbedPlants) {
+  const std::vector<std::string> few = {
+      "--set", "sets.validation_cases=4", "--set", "sets.test_cases=10", "--json", "--quiet"};
+  const Outcome made =
+      run(std::vector<std::string>{"optimize", "irb4600", "--budget", "640", "--out", "run"} + few);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const json recorded = json::parse(made.out)["winner"]["test_summary"];
+  EXPECT_EQ(recorded["cases"], 10);
+  EXPECT_EQ(recorded["failures"], 0);
+  const auto judge = [&](const std::string& design, const std::string& where) {
+    const Outcome judged = run(std::vector<std::string>{"evaluate", design, "--problem", "irb4600",
+                                                        "--set", "perturbation.apply_to=" + where} +
+                               few);
+    EXPECT_EQ(judged.exit_code, 0) << judged.err;
+    return json::parse(judged.out)["summary"]["mean_error_m"].get<double>();
+  };
+  const std::string winner = "run/winner.toml";
+  EXPECT_EQ(judge(winner, "everywhere"), recorded["mean"]);
+  // The encoder's steps alone make more of an error than the nominal arm has.
+  EXPECT_LT(judge(winner, "training"), recorded["mean"]);
+  EXPECT_LT(recorded["mean"], judge("irb4600-start", "everywhere"));
+}
+
 // A run that version 1.0 made with `optimize sphere -o random --set function.dimension=2 --budget
 // 20`, which meant the plain form. The same command means another problem now.
 class CliOptimizeOldRun : public CliOptimize {
@@ -89,8 +116,11 @@ class CliOptimizeOldRun : public CliOptimize {
   const std::filesystem::path old_ =
       std::filesystem::path(ARMWRIGHT_TEST_DATA) / "runs" / "sphere-1.0";
   const std::filesystem::path run_ = folder_.path() / "results" / "sphere-random-seed1";
-  const std::vector<std::string> command_ = {
-      "optimize", "sphere", "-o", "random", "--set", "function.dimension=2", "--budget", "20"};
+  const std::vector<std::string> command_ = {"optimize", "sphere",
+                                             "-o",       "random",
+                                             "--set",    "function.dimension=2",
+                                             "--budget", "20",
+                                             "--out",    "results/sphere-random-seed1"};
 };
 
 TEST_F(CliOptimizeOldRun, GoesOnWithThePlainFormByTheSameCommand) {
@@ -128,15 +158,44 @@ TEST_F(CliOptimizeOldRun, StaysAsItIsIfTheCommandNamesAnotherInstanceOrFolder) {
 
 TEST_F(CliOptimize, RefusesToGoOnWithAnotherConfiguration) {
   ASSERT_EQ(run(sphere_).exit_code, 0);
-  const Outcome outcome = run({"optimize", "sphere", "--budget", "301"});
+  const Outcome outcome = run({"optimize", "sphere", "--optimizer", "ga", "--budget", "299"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
-  EXPECT_THAT(outcome.err, HasSubstr("run.budget: recorded 300, now 301"));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("run.budget: recorded 300, now 299"),
+                                 HasSubstr("A larger budget can continue a run")));
+}
+
+TEST_F(CliOptimize, ALargerBudgetContinuesTheRun) {
+  ASSERT_EQ(run(sphere_).exit_code, 0);
+  const std::vector<std::string> larger = {"optimize", "sphere",   "--optimizer",
+                                           "ga",       "--budget", "700"};
+  const Outcome whole = run(larger + std::vector<std::string>{"--out", "whole"});
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  const Outcome continued = run(larger);
+  ASSERT_EQ(continued.exit_code, 0) << continued.err;
+  EXPECT_THAT(continued.err, HasSubstr("continuing with a budget of 700 in place of 300"));
+  for (const char* file : {"result.json", "winner.toml", "convergence.csv", "results.sqlite"}) {
+    EXPECT_TRUE(read(std::string("results/sphere-ga-seed1/") + file) ==
+                read(std::string("whole/") + file))
+        << file;
+  }
+  const Outcome doctor = run({"doctor", "results/sphere-ga-seed1"});
+  EXPECT_EQ(doctor.exit_code, 0) << doctor.out;
+  EXPECT_THAT(doctor.out, testing::Not(HasSubstr("nothing covers")));
+}
+
+TEST_F(CliOptimize, RunsWithOtherSettingsHaveOtherFolders) {
+  ASSERT_EQ(run(sphere_).exit_code, 0);
+  const Outcome other = run(sphere_ + std::vector<std::string>{"--set", "function.dimension=2",
+                                                               "--opt", "population=20"});
+  ASSERT_EQ(other.exit_code, 0) << other.err;
+  EXPECT_TRUE(has("results/sphere-ga-seed1-dimension2-population20/result.json")) << other.err;
 }
 
 TEST_F(CliOptimize, TunesTheArm) {
-  const Outcome outcome = run({"optimize", "q1-complex", "--budget", "70", "--validation-cases",
-                               "1", "--set", "sets.test_cases=2", "--quiet", "--out", "deep/q1/"});
+  const Outcome outcome = run({"optimize", "q1-complex", "--optimizer", "ga", "--budget", "70",
+                               "--validation-cases", "1", "--set", "sets.test_cases=2", "--set",
+                               "task.ik_bug=true", "--quiet", "--out", "deep/q1/"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(
       outcome.out,
@@ -147,7 +206,7 @@ TEST_F(CliOptimize, TunesTheArm) {
   // The winner's design is the file that evaluate reads: the same cases give the same errors, bit
   // for bit.
   const Outcome evaluated = run({"evaluate", "deep/q1/winner.toml", "--problem", "q1-complex",
-                                 "--cases", "2", "--json", "--quiet"});
+                                 "--set", "task.ik_bug=true", "--cases", "2", "--json", "--quiet"});
   const json cases = json::parse(evaluated.out).at("cases");
   EXPECT_EQ(cases[0].at("mean_error_m"), result.at("winner").at("test").at("case_errors")[0]);
   EXPECT_EQ(cases[1].at("mean_error_m"), result.at("winner").at("test").at("case_errors")[1]);
@@ -156,9 +215,10 @@ TEST_F(CliOptimize, TunesTheArm) {
 TEST_F(CliOptimize, InterruptedItResumesToTheSameResult) {
   // One thread, so that some seconds of work are ahead when the first record is seen; the reference
   // uses two.
-  const std::vector<std::string> common = {"optimize", "q1-complex",         "--budget",
-                                           "350",      "--validation-cases", "1",
-                                           "--set",    "sets.test_cases=1",  "--out"};
+  const std::vector<std::string> common = {
+      "optimize", "q1-complex",         "--optimizer", "ga",    "--budget",
+      "350",      "--validation-cases", "1",           "--set", "sets.test_cases=1",
+      "--out"};
   Program interrupted(folder_.path(),
                       common + std::vector<std::string>{"it's here", "--jobs", "1"});
   wait_for_records(interrupted, "it's here");
@@ -167,7 +227,8 @@ TEST_F(CliOptimize, InterruptedItResumesToTheSameResult) {
   ASSERT_EQ(stopped.exit_code, 130) << stopped.err;
   EXPECT_THAT(stopped.out, IsEmpty());
   const std::string command =
-      "armwright optimize q1-complex --budget 350 --validation-cases 1 --set sets.test_cases=1 "
+      "armwright optimize q1-complex --optimizer ga --budget 350 --validation-cases 1 --set "
+      "sets.test_cases=1 "
       "--out 'it'\\''s here' --jobs 1";
   EXPECT_THAT(stopped.err, AllOf(HasSubstr("interrupted; nothing is lost"), HasSubstr(command)));
   EXPECT_FALSE(has("it's here/result.json"));
@@ -185,8 +246,9 @@ TEST_F(CliOptimize, InterruptedItResumesToTheSameResult) {
 }
 
 TEST_F(CliOptimize, AFolderInUseAndATerminatedRun) {
-  const std::vector<std::string> endless = {"optimize", "q1-complex", "--budget", "1000000",
-                                            "--out",    "busy",       "--jobs",   "1"};
+  const std::vector<std::string> endless = {"optimize", "q1-complex", "--optimizer", "ga",
+                                            "--budget", "1000000",    "--out",       "busy",
+                                            "--jobs",   "1"};
   Program first(folder_.path(), endless);
   wait_for_records(first, "busy");
   const Outcome second = run(endless);
@@ -195,25 +257,30 @@ TEST_F(CliOptimize, AFolderInUseAndATerminatedRun) {
   first.send(SIGTERM);
   const Outcome stopped = first.wait();
   EXPECT_EQ(stopped.exit_code, 75) << stopped.err;
-  EXPECT_THAT(stopped.err, HasSubstr("armwright optimize q1-complex --budget 1000000 --out busy"));
+  EXPECT_THAT(
+      stopped.err,
+      HasSubstr("armwright optimize q1-complex --optimizer ga --budget 1000000 --out busy"));
 }
 
 TEST_F(CliOptimize, StopsAtATimeLimitAndNamesTheFolderOfANewRun) {
   ASSERT_EQ(run(sphere_).exit_code, 0);
-  const Outcome outcome =
-      run({"optimize", "sphere", "--budget", "100000000000", "--time-limit", "0.2s", "--new"},
-          {{{"ARMWRIGHT_SEED", "1"}}, ""});
+  const Outcome outcome = run({"optimize", "sphere", "--optimizer", "ga", "--budget",
+                               "100000000000", "--time-limit", "0.2s", "--new"},
+                              {{{"ARMWRIGHT_SEED", "1"}}, ""});
   EXPECT_EQ(outcome.exit_code, 75) << outcome.err;
-  EXPECT_THAT(outcome.err,
-              AllOf(HasSubstr("the time limit is reached"),
-                    HasSubstr("armwright optimize sphere --budget 100000000000 --time-limit 0.2s "
-                              "--out results/sphere-ga-seed1-002")));
+  EXPECT_THAT(
+      outcome.err,
+      AllOf(HasSubstr("the time limit is reached"),
+            HasSubstr(
+                "armwright optimize sphere --optimizer ga --budget 100000000000 --time-limit 0.2s "
+                "--out results/sphere-ga-seed1-002")));
 }
 
 TEST_F(CliOptimize, TheBarFitsTheTerminalAndLosesWholePiecesOnly) {
-  const std::string shown = run_on_terminal(
-      folder_.path(), {"optimize", "sphere", "--budget", "100000000000", "--time-limit", "0.5s"},
-      {}, 40);
+  const std::string shown = run_on_terminal(folder_.path(),
+                                            {"optimize", "sphere", "--optimizer", "ga", "--budget",
+                                             "100000000000", "--time-limit", "0.5s"},
+                                            {}, 40);
   std::istringstream lines(shown);
   int bars = 0;
   for (std::string line; std::getline(lines, line, '\r');) {
@@ -246,7 +313,7 @@ TEST_F(CliOptimize, ShowRefusesWhatIsNoRun) {
 }
 
 TEST_F(CliOptimize, ABudgetOfNothingIsRefused) {
-  const Outcome outcome = run({"optimize", "sphere", "--budget", "0"});
+  const Outcome outcome = run({"optimize", "sphere", "--optimizer", "ga", "--budget", "0"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("--budget is '0'; it must be an integer from 1"));
 }
@@ -268,18 +335,18 @@ TEST_F(CliOptimize, SaysWhetherTheWinnerKeepsTheLimit) {
                                           "--set",    "workspace.points=4",
                                           "--set",    "sets.validation_cases=5",
                                           "--set",    "sets.test_cases=10"};
-  const Outcome kept =
-      run(small + std::vector<std::string>{"--set", "objective.error_limit_m=0.02"});
+  const Outcome kept = run(
+      small + std::vector<std::string>{"--set", "objective.error_limit_m=0.02", "--out", "kept"});
   ASSERT_EQ(kept.exit_code, 0) << kept.err << kept.out;
   EXPECT_THAT(kept.out,
               AllOf(HasSubstr("Constraints"), HasSubstr("20.00 mm"), HasSubstr("% below)")));
-  const json result = json::parse(read("results/q2-torque-cmaes-seed1/result.json"));
+  const json result = json::parse(read("kept/result.json"));
   EXPECT_EQ(result["constraints"][0]["limit"]["value"], 0.02);
   EXPECT_EQ(result["constraints"][0]["limit"]["unit"], "m");
   EXPECT_EQ(result["winner"]["test"]["feasible"], true);
   EXPECT_LE(result["winner"]["test"]["metrics"][0], 0.02);
   EXPECT_EQ(result["least_violation"], 0);
-  EXPECT_THAT(run({"show", "results/q2-torque-cmaes-seed1"}).out, HasSubstr("feasible"));
+  EXPECT_THAT(run({"show", "kept"}).out, HasSubstr("feasible"));
 
   const std::vector<std::string> impossible = {"--set", "objective.error_limit_m=1e-9"};
   const Outcome missed = run(small + impossible + std::vector<std::string>{"--new"});
@@ -291,6 +358,39 @@ TEST_F(CliOptimize, SaysWhetherTheWinnerKeepsTheLimit) {
   EXPECT_THAT(none.out, AllOf(HasSubstr("No design met the constraints"),
                               HasSubstr("The nearest had error ")));
   EXPECT_GT(json::parse(read("results/none/result.json"))["least_violation"], 0);
+}
+
+// The thesis's design A.10 is tuned to one step of the physics per control period.
+TEST_F(CliOptimize, SaysThatAWinnerFailsWithMorePhysicsSteps) {
+  const std::vector<std::string> command = {"optimize",    "q1-complex",
+                                            "--engine",    "articulated",
+                                            "--optimizer", "nlopt:neldermead",
+                                            "--budget",    "10",
+                                            "--set",       "variables.start=table-a10",
+                                            "--set",       "sets.validation_cases=2",
+                                            "--set",       "sets.test_cases=2",
+                                            "--out",       "run"};
+  const Outcome first = run(command);
+  ASSERT_EQ(first.exit_code, 3) << first.err;  // the winner is the start
+  EXPECT_THAT(
+      first.out,
+      AllOf(HasSubstr("Under other conditions (the first 2 cases of test/2; own error"),
+            testing::ContainsRegex("engine ode +works"),
+            testing::ContainsRegex("2 physics steps per control period +fails in 2 of 2 cases"),
+            HasSubstr("check.json"), HasSubstr("armwright verify run/winner.toml")));
+  const std::string check = read("run/check.json");
+  const json settings = json::parse(run({"report", "run", "--json"}).out)
+                            .at("/arm/health/check/settings"_json_pointer);
+  EXPECT_GT(std::ranges::count(settings, json("bad"), [](const json& one) { return one["grade"]; }),
+            0);
+  const json shown = json::parse(run({"show", "run", "--json"}).out);
+  EXPECT_EQ(shown["winner"]["check"], json::parse(check));
+
+  // The same command makes it again, and a folder without it says so.
+  std::filesystem::remove(folder_.path() / "run/check.json");
+  EXPECT_THAT(run({"show", "run"}).out, HasSubstr("not checked"));
+  EXPECT_EQ(run(command).out, first.out);
+  EXPECT_EQ(read("run/check.json"), check);
 }
 
 TEST_F(CliOptimize, NamesWhoSeesConstraintsWhereAnotherCannot) {

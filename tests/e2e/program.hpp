@@ -17,6 +17,12 @@ struct Outcome {
   std::size_t most_memory_bytes = 0;  // that it held at a time
 };
 
+// Returns whether a run has come to its end: with a winner that has no fault (exit code 0), or with
+// one that has (3), for which a small budget is enough.
+inline bool has_ended(const Outcome& outcome) {
+  return outcome.exit_code == 0 || outcome.exit_code == 3;
+}
+
 struct Environment {
   std::vector<std::pair<std::string, std::string>> variables;  // beside the test's own
   std::string out_file;  // where stdout goes instead, "/dev/full"

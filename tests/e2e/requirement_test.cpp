@@ -92,9 +92,25 @@ TEST_F(CliRequirements, AreShownWithTheProblem) {
 TEST_F(CliRequirements, AreShownOfARunsWinner) {
   const Outcome run = run_program(
       folder_.path(),
-      {"optimize", "q1-requirements", "--budget", "200", "--out", "a", "--set", "schedule.cases=2",
-       "--set", "workspace.points=4", "--set", "sets.validation_cases=2", "--set",
-       "sets.test_cases=2", "--set", "variables.bounds_factor=1.2", "--set",
+      {"optimize",
+       "q1-requirements",
+       "--optimizer",
+       "ga",
+       "--budget",
+       "200",
+       "--out",
+       "a",
+       "--set",
+       "schedule.cases=2",
+       "--set",
+       "workspace.points=4",
+       "--set",
+       "sets.validation_cases=2",
+       "--set",
+       "sets.test_cases=2",
+       "--set",
+       "variables.bounds_factor=1.2",
+       "--set",
        "requirement=[{quantity='energy', limit_j=1}, {quantity='tip_error', limit_m=10}]"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   const auto check = AllOf(HasSubstr("Requirements, on the worst case"),

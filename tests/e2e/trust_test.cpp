@@ -221,7 +221,7 @@ TEST_F(CliTrust, JobsInheritTheConsent) {
            "2", "--budget", "30", "--out", "study", "--executor", "script", "--quiet"});
   ASSERT_EQ(script.exit_code, 0) << script.err;
   EXPECT_THAT(script.out, HasSubstr("cell --jobs 1 --trust \"$study\""));
-  EXPECT_EQ(run({"cell", "study", "0-3", "--trust", "--quiet"},
+  EXPECT_EQ(run({"cell", "study", "0-5", "--trust", "--quiet"},
                 {.variables = {{"XDG_STATE_HOME", "/dev/null/none"}}, .out_file = ""})
                 .exit_code,
             0);

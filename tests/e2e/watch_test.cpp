@@ -25,7 +25,8 @@ class CliWatch : public testing::Test {
  protected:
   void SetUp() override {
     const Outcome outcome = run_program(
-        folder_.path(), {"optimize", "sphere", "--budget", "20", "--out", "run", "--quiet"});
+        folder_.path(),
+        {"optimize", "sphere", "--optimizer", "ga", "--budget", "20", "--out", "run", "--quiet"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     for (const char* name : {"xdg-open", "own-browser"}) {
       make_browser(name);

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 using Fault = FailingFiles::Fault;
 
 Words make_endless_run(const std::string& out) {
-  return {"optimize", "q1-complex", "--engine", "ode", "--budget", "10000000",
-          "--jobs",   "1",          "--out",    out,   "--quiet"};
+  return {"optimize", "q1-complex", "--optimizer", "ga",    "--engine", "ode",    "--budget",
+          "10000000", "--jobs",     "1",           "--out", out,        "--quiet"};
 }
 
 class Folders : public testing::Test {
@@ -141,12 +141,14 @@ TEST_F(Folders, ReadOnlyInputsAreInputs) {
   }
   Environment user;
   user.launcher = become_ordinary_user();
-  const Outcome outcome =
-      run({"optimize", "inputs/problem.toml", "--budget", "35", "--out", "run", "--quiet"}, user);
+  const Outcome outcome = run({"optimize", "inputs/problem.toml", "--optimizer", "ga", "--budget",
+                               "35", "--out", "run", "--quiet"},
+                              user);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   fs::permissions(folder_ / "inputs/arm.urdf", fs::perms::none);
-  const Outcome unreadable =
-      run({"optimize", "inputs/problem.toml", "--budget", "35", "--out", "other"}, user);
+  const Outcome unreadable = run(
+      {"optimize", "inputs/problem.toml", "--optimizer", "ga", "--budget", "35", "--out", "other"},
+      user);
   EXPECT_EQ(unreadable.exit_code, 74);
   EXPECT_THAT(unreadable.err, AllOf(HasSubstr("arm.urdf"), HasSubstr("Permission denied")));
   fs::permissions(folder_ / "inputs", fs::perms::all);

@@ -20,7 +20,7 @@ class Kill : public testing::Test {
 // dies, half of the bytes are written.
 TEST_F(Kill, AtEveryWriteAndEveryRenameOfARun) {
   std::filesystem::create_directory(folder_ / "runs");
-  ASSERT_EQ(run(make_run("runs/whole")).exit_code, 0);
+  ASSERT_TRUE(has_ended(run(make_run("runs/whole"))));
   for (const char* call : {"write", "rename"}) {
     FailingFiles files(folder_ / "runs", call);
     int kills = 0;
@@ -45,6 +45,49 @@ TEST_F(Kill, AtEveryWriteAndEveryRenameOfARun) {
       EXPECT_THAT(run({"doctor", out}).out, Not(HasSubstr("nothing covers")));
     }
     // manifest.json and five derived files; SQLite renames its own file with the same call.
+    EXPECT_GE(kills, 5) << call;
+  }
+}
+
+// Kills the process while it continues a run that has ended: either the smaller budget's command or
+// the larger one's goes on from there, and the larger one's ends as if it had begun the run.
+TEST_F(Kill, AtEveryWriteAndEveryRenameOfARunThatIsContinued) {
+  std::filesystem::create_directory(folder_ / "runs");
+  ASSERT_TRUE(has_ended(run(make_run("runs/small", "70"))));
+  ASSERT_TRUE(has_ended(run(make_run("runs/large", "105"))));
+  for (const char* call : {"write", "rename"}) {
+    FailingFiles files(folder_ / "runs", call);
+    int kills = 0;
+    const std::uint64_t step = std::string(call) == "write" ? sample_or_all(3, 1) : 1;
+    for (std::uint64_t at = 1;; at += step) {
+      SCOPED_TRACE(call + std::to_string(at));
+      const std::string out = std::string("runs/") + call + std::to_string(at);
+      std::filesystem::copy(folder_ / "runs/small", folder_ / out,
+                            std::filesystem::copy_options::recursive);
+      const Outcome killed = run(make_run(out, "105"), files.make_environment(Fault::kill, at, 0));
+      if (killed.exit_code == 0) {
+        EXPECT_LT(files.count(), at);
+        break;
+      }
+      ASSERT_EQ(killed.exit_code, -SIGKILL) << killed.err;
+      ++kills;
+      EXPECT_EQ(run({"doctor", out}).exit_code, 0) << run({"doctor", out}).out;
+      const Outcome before = run(make_run(out, "70"));
+      if (before.exit_code == 0) {
+        expect_same_run(folder_ / "runs/small", folder_ / out);
+      } else {
+        EXPECT_THAT(before.err, HasSubstr("run.budget: recorded 105, now 70"));
+      }
+      const Outcome resumed = run(make_run(out, "105"));
+      ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+      // The journal has more judgements: those of the smaller budget.
+      for (const char* file : {"result.json", "winner.toml", "winner-trajectory.csv",
+                               "convergence.csv", "results.sqlite"}) {
+        EXPECT_TRUE(read_text(folder_ / "runs/large" / file) == read_text(folder_ / out / file))
+            << file;
+      }
+      EXPECT_THAT(run({"doctor", out}).out, Not(HasSubstr("nothing covers")));
+    }
     EXPECT_GE(kills, 5) << call;
   }
 }

@@ -26,16 +26,16 @@ class Limits : public testing::Test {
 const Words kOneGibibyte = {"--as=1073741824"};
 
 TEST_F(Limits, HugeNumbersAreRefusedWithWhatIsAllowed) {
-  const Words optimize = {"optimize", "q1-complex", "--engine", "articulated", "--out", "run"};
+  const Words optimize = {"optimize", "q1-complex", "--out", "run"};
   for (const auto& [words, message] : std::vector<std::pair<Words, std::string>>{
-           {optimize + Words{"--opt", "population=1000000000"}, "population"},
+           {optimize + Words{"--optimizer", "ga", "--opt", "population=1000000000"}, "population"},
            {optimize + Words{"--optimizer", "cmaes", "--opt", "population=1000000000"},
             "population"},
            {optimize + Words{"--optimizer", "de", "--opt", "population=1000000000"}, "population"},
            {optimize + Words{"--optimizer", "pagmo:de", "--opt", "population=1000000000"},
             "population"},
            {optimize + Words{"--optimizer", "random", "--opt", "batch=1000000000"}, "batch"},
-           {{"optimize", "sphere", "--set", "function.dimension=1000000000"},
+           {{"optimize", "sphere", "--optimizer", "ga", "--set", "function.dimension=1000000000"},
             "function.dimension is 1000000000; it must be"},
            {optimize + Words{"--budget", "1000000000000000"}, "--budget is '1000000000000000'"},
            {optimize + Words{"--budget", "99999999999999999999"}, "an integer from 1 to"},
@@ -271,8 +271,8 @@ TEST_F(Limits, OfFileSizeAndProcessorTimeEndARunResumably) {
     expect_same_run(folder_ / "whole", folder_ / "run");
     fs::remove_all(folder_ / "run");
   }
-  const Words endless = {"optimize", "q1-complex", "--engine", "ode",    "--budget",
-                         "10000000", "--out",      "long",     "--quiet"};
+  const Words endless = {"optimize", "q1-complex", "--optimizer", "ga",   "--engine", "ode",
+                         "--budget", "10000000",   "--out",       "long", "--quiet"};
   const Outcome outcome = run_limited({"--cpu=1:30"}, endless);
   EXPECT_EQ(outcome.exit_code, 75);
   EXPECT_THAT(outcome.err, HasSubstr("stopped by a signal; nothing is lost. To resume:"));

@@ -43,7 +43,8 @@ const std::string kProblem =
 TEST_F(Names, OfARobotAreTextInThePage) {
   write_text(folder_ / "problem.toml", kProblem);
   copy_robot("arm.urdf", "&lt;/script&gt;&lt;script&gt;document.title='PWNED'&lt;/script&gt;");
-  const Outcome made = run({"optimize", "problem.toml", "--budget", "35", "--out", "run"});
+  const Outcome made =
+      run({"optimize", "problem.toml", "--optimizer", "ga", "--budget", "35", "--out", "run"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const Outcome report = run({"report", "run", "--out", "run.html"});
   ASSERT_EQ(report.exit_code, 0) << report.err;
@@ -53,7 +54,8 @@ TEST_F(Names, OfARobotAreTextInThePage) {
        {std::string("a\x1b[2Jb"), std::string("a\nb\u202ec"), std::string("a\xff\xfe"),
         std::string("a\0b", 3), std::string("a&#27;[31m"), std::string("a&#8238;b")}) {
     copy_robot("arm.urdf", name);
-    const Outcome outcome = run({"optimize", "problem.toml", "--budget", "35", "--out", "other"});
+    const Outcome outcome =
+        run({"optimize", "problem.toml", "--optimizer", "ga", "--budget", "35", "--out", "other"});
     expect_harmless(outcome);
     EXPECT_THAT(outcome.exit_code, AnyOf(0, 2, 4)) << outcome.err;
     fs::remove_all(folder_ / "other");
@@ -68,7 +70,8 @@ TEST_F(Names, OfAProblemsTextsAreHarmlessEverywhere) {
         std::string(4096, 'x')}) {
     SCOPED_TRACE(title.substr(0, 30));
     write_text(folder_ / "problem.toml", "title = \"" + title + "\"\n" + kProblem);
-    const Outcome made = run({"optimize", "problem.toml", "--budget", "35", "--out", "run"});
+    const Outcome made =
+        run({"optimize", "problem.toml", "--optimizer", "ga", "--budget", "35", "--out", "run"});
     expect_harmless(made);
     if (made.exit_code == 0) {
       const Outcome report = run({"report", "run", "--out", "run.html"});
@@ -139,8 +142,9 @@ TEST_F(Names, InTheCommandLineAreShownHarmlessly) {
          {Words{name}, Words{"list", "problems", name}, Words{"list", "optimizers", name},
           Words{"optimize", name}, Words{"optimize", "sphere", "--optimizer", name},
           Words{"optimize", "sphere", "--optimizer", "exec:" + name},
-          Words{"optimize", "sphere", "--opt", name}, Words{"optimize", "sphere", "--set", name},
-          Words{"optimize", "sphere", "--seed", name}, Words{"compare", name},
+          Words{"optimize", "sphere", "--optimizer", "ga", "--opt", name},
+          Words{"optimize", "sphere", "--optimizer", "ga", "--set", name},
+          Words{"optimize", "sphere", "--optimizer", "ga", "--seed", name}, Words{"compare", name},
           Words{"evaluate", name}, Words{"show", name}, Words{"report", name},
           Words{"export", name, "--format", "csv"}, Words{"--" + name}}) {
       const Outcome outcome = run(command);
@@ -224,15 +228,15 @@ TEST_F(Names, AndTextsThatAreNoUtf8) {
   fs::create_directory(folder_ / odd);
   fs::copy(ARMWRIGHT_CONFIGS "/robots/irb4600_40_255.urdf", folder_ / odd / "arm.urdf");
   write_text(folder_ / odd / "problem.toml", kProblem);
-  const Outcome outcome =
-      run({"optimize", odd + "/problem.toml", "--budget", "35", "--out", "run"});
+  const Outcome outcome = run(
+      {"optimize", odd + "/problem.toml", "--optimizer", "ga", "--budget", "35", "--out", "run"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   expect_harmless(outcome);
   // The name of the robot's file goes into the manifest.
   fs::copy(folder_ / odd / "arm.urdf", folder_ / odd / "a\xff.urdf");
   fs::copy(folder_ / odd / "arm.urdf", folder_ / "a\xff.urdf");
-  const Outcome robot = run({"optimize", "q1-complex", "--set", "robot.urdf=a\xff.urdf", "--budget",
-                             "35", "--out", "other"});
+  const Outcome robot = run({"optimize", "q1-complex", "--optimizer", "ga", "--set",
+                             "robot.urdf=a\xff.urdf", "--budget", "35", "--out", "other"});
   EXPECT_THAT(robot.exit_code, AnyOf(0, 2, 4)) << robot.err;
   expect_harmless(robot);
   // The name of a plugin.

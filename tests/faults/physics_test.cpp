@@ -64,10 +64,11 @@ TEST_P(Physics, FailsAsAValueWithAReason) {
       EXPECT_THAT(evaluated.out, AnyOf(HasSubstr("diverged"), HasSubstr("failed")));
     }
   }
-  const Outcome outcome = run_program(
-      folder.path(), Words{"optimize", "q1-complex", "--budget", "70", "--set", "sets.test_cases=3",
-                           "--set", "sets.validation_cases=2", "--out", "run", "--quiet"} +
-                         common + start);
+  const Outcome outcome =
+      run_program(folder.path(), Words{"optimize", "q1-complex", "--optimizer", "ga", "--budget",
+                                       "70", "--set", "sets.test_cases=3", "--set",
+                                       "sets.validation_cases=2", "--out", "run", "--quiet"} +
+                                     common + start);
   ASSERT_THAT(outcome.exit_code, AnyOf(0, 3)) << outcome.err;
   const JournalContent journal = read_journal(folder / "run/journal");
   EXPECT_EQ(journal.training.size(), 70u);

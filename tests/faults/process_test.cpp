@@ -130,7 +130,7 @@ std::vector<int> list_children(int parent) {
 // If a worker dies, at most its cell is lost, and is run again. A cell whose process dies twice is
 // marked as failed, and the same command runs it again.
 TEST_F(Processes, WorkersOfAComparisonThatAreKilledChangeNoTable) {
-  ASSERT_EQ(run(make_arm_comparison("whole")).exit_code, 0);
+  ASSERT_TRUE(has_ended(run(make_arm_comparison("whole"))));
   RandomStream random("test/kill-workers", 1);
   Program program(folder_.path(), make_arm_comparison("killed"));
   int kills = 0;
@@ -148,13 +148,13 @@ TEST_F(Processes, WorkersOfAComparisonThatAreKilledChangeNoTable) {
   EXPECT_GT(kills, 0);
   EXPECT_THAT(outcome.exit_code, AnyOf(0, 3)) << outcome.err;
   const Outcome again = run(make_arm_comparison("killed"));
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(has_ended(again)) << again.err;
   EXPECT_EQ(read_study(folder_ / "whole"), read_study(folder_ / "killed"));
 }
 
 // Only cell.json says that a cell is done, not the exit of its worker.
 TEST_F(Processes, ACellIsDoneOnlyByItsOwnRecord) {
-  ASSERT_EQ(run(make_arm_comparison("study")).exit_code, 0);
+  ASSERT_TRUE(has_ended(run(make_arm_comparison("study"))));
   const auto tables = read_study(folder_ / "study");
   const auto cell = folder_ / "study/cells/q1-complex/ga/r02";
   for (const char* file : {"cell.json", "result.json", ""}) {  // the last one: the whole folder
@@ -162,7 +162,7 @@ TEST_F(Processes, ACellIsDoneOnlyByItsOwnRecord) {
     std::filesystem::remove(cell / "cell.json");
     std::filesystem::remove_all(cell / file);
     const Outcome again = run(make_arm_comparison("study"));
-    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_TRUE(has_ended(again)) << again.err;
     EXPECT_TRUE(std::filesystem::exists(cell / "cell.json"));
     EXPECT_EQ(read_study(folder_ / "study"), tables);
   }
@@ -170,10 +170,10 @@ TEST_F(Processes, ACellIsDoneOnlyByItsOwnRecord) {
 
 // The bytes are the same for any number of workers, also after kills.
 TEST_F(Processes, AComparisonDoesNotDependOnTheNumberOfItsWorkers) {
-  ASSERT_EQ(run(make_arm_comparison("one", "1")).exit_code, 0);
+  ASSERT_TRUE(has_ended(run(make_arm_comparison("one", "1"))));
   const auto tables = read_study(folder_ / "one");
   for (const std::string jobs : {"2", "8"}) {
-    ASSERT_EQ(run(make_arm_comparison(jobs, jobs)).exit_code, 0);
+    ASSERT_TRUE(has_ended(run(make_arm_comparison(jobs, jobs))));
     EXPECT_EQ(read_study(folder_ / jobs), tables) << jobs;
   }
 }
@@ -207,7 +207,7 @@ TEST_P(JobsAndKind, GiveTheSameRun) {
   };
   for (const std::string jobs : {"1", "2", "8"}) {
     const Outcome outcome = run_program(folder.path(), make(jobs));
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    ASSERT_TRUE(has_ended(outcome)) << outcome.err;
     expect_same_run(folder / "1", folder / jobs);
   }
   // The comparison is resumed with another number of workers.
@@ -216,7 +216,7 @@ TEST_P(JobsAndKind, GiveTheSameRun) {
   std::filesystem::rename(folder / "1", folder / "resumed");
   std::filesystem::rename(folder / "8", folder / "whole");
   std::filesystem::rename(folder / "resumed", folder / "8");
-  ASSERT_EQ(run_program(folder.path(), make("8")).exit_code, 0);
+  ASSERT_TRUE(has_ended(run_program(folder.path(), make("8"))));
   expect_same_run(folder / "whole", folder / "8");
 }
 
@@ -238,7 +238,7 @@ TEST_F(Processes, AWallClockThatJumpsChangesNothing) {
                                         "--opt",        "silence_s=5",
                                         "--time-limit", "1h"};
   };
-  ASSERT_EQ(run(make("whole")).exit_code, 0);
+  ASSERT_TRUE(has_ended(run(make("whole"))));
   Environment environment;
   environment.variables = {{"LD_PRELOAD", ARMWRIGHT_SHIFTED_CLOCK},
                            {"SHIFTED_CLOCK_FILE", folder_ / "shift_s"}};
@@ -250,7 +250,7 @@ TEST_F(Processes, AWallClockThatJumpsChangesNothing) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   const Outcome outcome = program.wait();
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(has_ended(outcome)) << outcome.err;
   expect_same_run(folder_ / "whole", folder_ / "jumping");
   // The library was loaded: the date in the manifest is ten days off, in either direction.
   const auto get_year_and_day = [&](const char* folder) {
@@ -280,7 +280,7 @@ TEST_F(Processes, ASuspendedRunBlamesNobodyForTheSilence) {
   for (const Words& optimizer :
        {Words{get_plugin("good")}, Words{"exec:python3 " + get_script("good.py")}}) {
     const std::string name = std::to_string(++number);
-    ASSERT_EQ(run(make("whole-" + name, optimizer)).exit_code, 0);
+    ASSERT_TRUE(has_ended(run(make("whole-" + name, optimizer))));
     Program program(folder_.path(), make("suspended-" + name, optimizer), mark("suspended"));
     ASSERT_TRUE(wait_until([&] {
       return get_size(folder_ / ("suspended-" + name) / "journal") > 2000 || !program.is_running();
@@ -297,7 +297,7 @@ TEST_F(Processes, ASuspendedRunBlamesNobodyForTheSilence) {
       ::kill(pid, SIGCONT);
     }
     const Outcome outcome = program.wait();
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(has_ended(outcome)) << outcome.err;
     expect_same_run(folder_ / ("whole-" + name), folder_ / ("suspended-" + name));
   }
 }

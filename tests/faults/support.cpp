@@ -87,13 +87,14 @@ void open_to_all(const std::filesystem::path& folder) {
 }
 
 Words make_run(const std::string& out, const std::string& budget) {
-  return {"optimize", "q1-complex",
-          "--engine", "articulated",
-          "--budget", budget,
-          "--set",    "workspace.points=4",
-          "--set",    "sets.test_cases=4",
-          "--set",    "sets.validation_cases=2",
-          "--out",    out,
+  return {"optimize",    "q1-complex",
+          "--optimizer", "ga",
+          "--engine",    "articulated",
+          "--budget",    budget,
+          "--set",       "workspace.points=4",
+          "--set",       "sets.test_cases=4",
+          "--set",       "sets.validation_cases=2",
+          "--out",       out,
           "--quiet"};
 }
 

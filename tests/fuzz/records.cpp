@@ -1,10 +1,11 @@
-// result.json, cell.json, attempt.json and SHA256SUMS: what is read is the same written and read
+// result.json, check.json, cell.json, attempt.json and SHA256SUMS: what is read is the same written and read
 // again.
 #include "base/folder_checksums.hpp"
 #include "fuzz/harness.hpp"
 #include "study/compare/cell.hpp"
 #include "study/matrix/attempt.hpp"
 #include "study/run/run_result.hpp"
+#include "study/verification/winner_check.hpp"
 
 namespace armwright::fuzz {
 namespace {
@@ -64,6 +65,7 @@ void fuzz_records(std::string_view input) {
   check_checksums(input);
   is_read([&] { check_result(parse_result(std::string(input), "result.json")); });
   check(input, "result.json", parse_result);
+  check(input, "check.json", parse_check);
   check(input, "cell.json", parse_cell);
   check(input, "attempt.json", parse_attempt);
 }

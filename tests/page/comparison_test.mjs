@@ -40,7 +40,7 @@ test('two studies: what both have is compared', async () => {
   const headline = await page.locator('[data-figure=headline]').innerText();
   assert.match(headline, /The studies are comparable/);
   assert.match(headline, /Only A has nlopt:bobyqa and q2-e6/);
-  assert.equal(await page.locator('[data-figure=compared-cells] tbody tr').count(), 3); // ga, cmaes and random on q1-complex
+  assert.equal(await page.locator('[data-figure=compared-cells] tbody tr').count(), 4); // ga, cmaes, start and random on q1-complex
   expect_no_faults();
   await page.close();
 });

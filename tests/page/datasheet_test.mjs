@@ -20,7 +20,7 @@ after(() => browser.close());
 function export_datasheet(run) {
   const out = join(kFolder, `datasheet-of-${run}`);
   rmSync(out, { recursive: true, force: true });
-  run_program('export', join(kFolder, run), '--format', 'datasheet', '--out', out);
+  run_program('export', join(kFolder, run), '--format', 'datasheet', '--force', '--out', out);
   return out;
 }
 
@@ -57,7 +57,7 @@ test('has the three errors, the whole workspace and speed, and the command that 
   assert.ok(text.includes(`RMS ${mm(motion.error_while_moving_rms_m)} mm, peak ${mm(motion.error_while_moving_peak_m)} mm`), text);
   assert.ok(text.includes(`up to ${mm(motion.error_after_start_up_m)} mm before the target's first rest`), text);
   assert.match(text, /their integrals start empty, so gravity pulls the arm/);
-  assert.match(text, /To make it: \S*armwright optimize q1-complex --engine articulated --budget 1400/);
+  assert.match(text, /To make it: \S*armwright optimize q1-complex --optimizer ga --set task.ik_bug=true --budget 1400/);
   const cut = await page.$$eval('dd, p', (parts) =>
     parts
       .filter((part) => part.scrollHeight > part.clientHeight + 1 || part.scrollWidth > part.clientWidth + 1)

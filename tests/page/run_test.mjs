@@ -58,6 +58,14 @@ test('the first screen of a run has its headlines and the health of the winner',
 
   const card = page.locator('[data-figure=health]');
   assert.match(await card.locator('.verdict').innerText(), /The winner is/);
+  // A winner that fails under another condition is not called healthy.
+  const { settings } = JSON.parse(readFileSync(join(kFolder, 'run', 'check.json'), 'utf8'));
+  const is_failing = settings.some((setting) => setting.verdict === 'fails');
+  const mark = await card.locator('tr', { hasText: 'Under other conditions' }).locator('.mark').innerText();
+  assert.equal(mark === '✗ bad', is_failing);
+  if (is_failing) {
+    assert.match(await card.locator('.verdict').innerText(), /^✗ The winner is not healthy: .*fails in \d+ of 10 cases/);
+  }
   const box = await card.boundingBox();
   assert.ok(box.y + box.height <= 800, `the card ends at ${box.y + box.height}`);
   // The recorded metric is the mean over joints and test cases. The shares have two digits.
@@ -67,9 +75,9 @@ test('the first screen of a run has its headlines and the health of the winner',
   const mean = shares.reduce((sum, share) => sum + share, 0) / shares.length;
   const expected = 100 * get_metric('saturated_share');
   assert.ok(Math.abs(mean - expected) <= 0.05 * expected, `${mean} % is not ${expected} %`);
-  assert.equal(await card.locator('tr .mark').count(), 7);
+  assert.equal(await card.locator('tr .mark').count(), 8);
   for (const mark of await card.locator('tr .mark').allInnerTexts()) {
-    assert.match(mark, /^(✓ good|! watch|✗ bad|– not graded)$/);
+    assert.match(mark, /^(✓ good|! watch|✗ bad|– not graded|\? not checked)$/);
   }
   expect_no_faults();
   await page.close();

@@ -113,7 +113,7 @@ async function check_progress(command, out, unit, sign) {
 }
 
 test('the page of a run in progress has its speed, the time left and its failures', async () => {
-  const command = ['optimize', 'q1-complex', '--engine', 'articulated', '--budget', '10000000', '--jobs', '1'];
+  const command = ['optimize', 'q1-complex', '--optimizer', 'ga', '--budget', '10000000', '--jobs', '1'];
   const watched = await check_progress(command, 'run-in-progress', 'cases', 'journal');
   const { page, bar, before } = watched;
   await page.waitForFunction((old) => Number(document.querySelector('[role=progressbar]').ariaValueNow) > old, before);

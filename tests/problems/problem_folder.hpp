@@ -8,6 +8,7 @@
 
 #include "base/expect_error.hpp"
 #include "base/temporary_folder.hpp"
+#include "base/text.hpp"
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_loader.hpp"
 
@@ -15,8 +16,21 @@ namespace armwright {
 
 // As messages list them.
 inline constexpr const char* kShippedDesigns =
-    "faithful-e6, faithful-e6-computed-torque, faithful-q1, faithful-q3, robust-e6, robust-q1, "
+    "faithful-e6, faithful-e6-computed-torque, faithful-q1, faithful-q3, irb4600-start, robust-e6, "
+    "robust-q1, "
     "robust-q3, table-a1, table-a10, table-a11, table-a5, table-a6, table-a7, table-a8, table-a9";
+
+// What a message lists of these names, "a, b, c", in place of `typed`.
+inline std::string list_near(const std::string& typed, std::string names, const char* command) {
+  std::vector<std::string> valid;
+  for (std::string& name : split(names, ',')) {
+    valid.push_back(name.starts_with(' ') ? name.substr(1) : name);
+  }
+  return list_valid(typed, valid, command);
+}
+inline std::string list_designs(const std::string& typed) {
+  return list_near(typed, kShippedDesigns, "armwright list designs");
+}
 
 class ProblemFolder {
  public:

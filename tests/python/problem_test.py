@@ -91,7 +91,7 @@ class ProblemTest(FolderTest):
 
     def test_agrees_with_a_run_of_the_programs(self):
         self.run_program(*"optimize q1-complex --engine articulated --optimizer random --schedule fixed:2 --budget 60 --quiet".split())
-        history = armwright.load_run("results/q1-complex-random-seed1").history
+        history = armwright.load_run("results/q1-complex-random-seed1-engine_articulated-fixed2").history
         mine = self.problem.evaluate(history.x, cases=2)
         self.assertEqual(history.objectives.data.tobytes(), mine.objectives.tobytes())
         self.assertEqual(history.case_errors.data.tobytes(), mine.case_errors.data.tobytes())

@@ -126,7 +126,7 @@ class RunTest(FolderTest):
     def test_options_schedule_and_default_folder(self):
         run = armwright.optimize("q1-complex", "ga", seed=2, budget=70, set=FAST, options={"population": 7, "mutation_probability": 0.25},
                                  schedule="fresh:2", jobs=1)
-        self.assertEqual(run.folder, pathlib.Path("results/q1-complex-ga-seed2"))
+        self.assertRegex(str(run.folder), "^results/q1-complex-ga-seed2-[0-9a-f]{8}$")
         self.assertEqual(run.manifest["configuration"]["run"]["options"]["population"], 7)
         self.run_program(*"optimize q1-complex --engine articulated --optimizer ga --seed 2 --budget 70 --opt population=7".split(),
                          *"--opt mutation_probability=0.25 --schedule fresh:2 --out its --quiet".split())

@@ -35,7 +35,8 @@ inline const std::vector<std::string> kProposedByVersion1 = {
     "task.home=[0.3, 0.9]",
     "task.distance_limit_m=0.2",
     "task.speed_m_per_s=0.2",
-    "variables.start_bandwidth_rad_per_s=0"};
+    "variables.start_bandwidth_rad_per_s=0",
+    "training.failure_rule=thesis"};
 
 class SilentObserver : public RunObserver {
  public:
@@ -71,8 +72,8 @@ class StoppingObserver final : public SilentObserver {
 inline RunPlan make_small_plan(const std::string& optimizer = "ga", std::int64_t budget = 40) {
   RunPlan plan;
   plan.problem = load_problem(
-      "q1-complex", std::vector<std::string>{"workspace.points=4", "sets.validation_cases=3",
-                                             "sets.test_cases=4"});
+      "q1-complex", std::vector<std::string>{"physics.engine=ode", "workspace.points=4",
+                                             "sets.validation_cases=3", "sets.test_cases=4"});
   plan.optimizer = load_optimizer(optimizer);
   const std::vector<std::string> options =
       optimizer == "ga" ? std::vector<std::string>{"population=8"} : std::vector<std::string>{};

@@ -462,11 +462,56 @@ test('the health card of a healthy winner, and of one that was not measured', ()
   health.joints.forEach((joint) => Object.assign(joint, { ripple: null, ripple_share: null, ripple_rms: null, ripple_hz: null }));
   health.moves = null;
   card = find(data, 'health');
-  assert.match(card.verdict.text, /^✓ The winner is healthy as far as it was measured\. Not measured: Oscillation/);
-  assert.equal(get_line(card, 'Overshoot').state, '? not measured');
+  assert.match(card.verdict.text, /^\? Nothing about the winner is bad as far as it was checked\. Not checked: Oscillation/);
+  assert.equal(card.verdict.mark, 'none');
+  assert.equal(get_line(card, 'Overshoot').value, 'no move that counts');
   health.failing = 'bad';
   health.failures = 2;
-  assert.match(find(data, 'health').verdict.text, /^✗ The winner is not healthy: 2 of 500 test cases failed\. Not measured/);
+  assert.match(find(data, 'health').verdict.text, /^✗ The winner is not healthy: 2 of 500 test cases failed\. Not checked/);
+});
+
+test('a winner is healthy only if it works under all other conditions', () => {
+  const data = make_run_data();
+  const { health } = data.arm;
+  health.joints.forEach((joint) => Object.assign(joint, { saturation: 'good', ripple: 'good' }));
+  health.bounds = { grade: 'good', near: 0, nearest: [{ name: 'joint_4.p', bound: 'lower', distance: 0.21 }] };
+  let card = find(data, 'health');
+  assert.deepEqual(card.verdict, { text: '✓ The winner is healthy.', mark: 'good' });
+  assert.equal(get_line(card, 'Under other').value, 'works with engine ode and masses +10 %');
+  assert.match(card.caption, /first 10 cases: a mean error up to 0\.3(00)? mm works/);
+
+  const [ode, masses] = health.check.settings;
+  Object.assign(masses, { grade: 'watch', outcome: '3.2 times its own error' });
+  assert.deepEqual(find(data, 'health').verdict, {
+    text: '! Nothing about the winner is bad, but watch: 3.2 times its own error with masses +10 %.',
+    mark: 'near',
+  });
+  health.check.settings.push({
+    name: '2 physics steps per control period',
+    grade: 'bad',
+    outcome: 'fails in 10 of 10 cases',
+    mean_m: null,
+    reason: '',
+  });
+  card = find(data, 'health');
+  assert.equal(card.verdict.mark, 'bad');
+  assert.match(card.verdict.text, /^✗ The winner is not healthy: .*fails in 10 of 10 cases with 2 physics steps per control period\./);
+  assert.equal(get_line(card, 'Under other').state, '✗ bad');
+
+  // A setting that was not simulated.
+  health.check.settings = [ode, { ...masses, grade: null, outcome: 'not simulated', reason: 'no armature' }];
+  card = find(data, 'health');
+  assert.equal(card.verdict.mark, 'none');
+  assert.equal(get_line(card, 'Under other').state, '? not checked');
+  assert.equal(get_line(card, 'Under other').meaning, 'no armature');
+
+  health.check = null;
+  card = find(data, 'health');
+  assert.deepEqual(card.verdict, {
+    text: '? Nothing about the winner is bad as far as it was checked. Not checked: Under other conditions.',
+    mark: 'none',
+  });
+  assert.equal(get_line(card, 'Under other').state, '? not checked');
 });
 
 // ---------------------------------------------------------------- a run in progress

@@ -32,16 +32,15 @@ constexpr const char* kCompareExamples = R"(Examples:
   armwright compare --preset smoke                 # a small study that takes seconds
   armwright compare configs/studies/q1.toml        # the study in this file; resumes if interrupted
   armwright compare q1 --dry-run                   # plan, cost and expected time of a shipped study
-  armwright compare --problems q1-complex,q2-e6 --optimizers ga,cmaes --replicates 20 --budget 5000 \
-      --engine articulated
+  armwright compare --problems q1-complex,q2-e6 --optimizers ga,cmaes --replicates 20 --budget 5000
   armwright compare q1 --replicates 30             # more replicates; only the new cells are run
   armwright compare q1 --executor slurm            # the same on a cluster (docs/clusters.md)
 
 Terms: a case is one path of the moving target. A cell is one run: an optimizer on a problem in a replicate.
 Every optimizer gets the same budget of simulated training cases. In replicate r all optimizers have the same training
 cases and the same start. The winner of each run is chosen on a validation set and judged on a test set, which is the
-same for all. Random search and a local search take part as baselines. The verdict follows from the statistics: see
-docs/comparing.md. The folder (default: results/NAME, with the NAME of the study's file, or study-PROBLEMS) holds the
+same for all. The start, random search and a local search take part as baselines. The verdict follows from the
+statistics: see docs/comparing.md. The folder (default: results/NAME, with the NAME of the study's file, or study-PROBLEMS) holds the
 plan (study.toml), every run with its journal (cells/), tables, result.json and verdict.txt. The same command resumes
 the study; replicates, problems and optimizers can be added to it. A change that would make the cells incomparable, for
 example another budget, is refused; --new begins another folder.)";
@@ -229,8 +228,8 @@ void add_compare(CLI::App& app, Session& session) {
       ->type_name("N");
   command
       ->add_option("--budget", options->budget,
-                   "Training cases to simulate in each run, the same for all (default: that of\n"
-                   "the file; required without a file)")
+                   "Training cases to simulate in each run, the same for all, as 5000, 1e5 or\n"
+                   "20k (default: that of the file; required without a file)")
       ->type_name("CASES");
   command
       ->add_option("--schedule", options->schedule,
@@ -245,8 +244,8 @@ void add_compare(CLI::App& app, Session& session) {
                    "numbers (default: 1)")
       ->type_name("N");
   command->add_flag("--no-baselines", options->no_baselines,
-                    "Leave out the baselines, random search and a local search; the verdict\n"
-                    "mentions this");
+                    "Leave out the baselines: the start, random search and a local search; the\n"
+                    "verdict mentions this");
   options->overrides.add_to(*command, true);
   add_jobs_flag(*command, options->jobs);
   add_time_limit_flag(*command, options->time_limit);

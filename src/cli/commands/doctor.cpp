@@ -28,7 +28,7 @@ using nlohmann::json;
 
 constexpr const char* kDoctorExamples = R"(Examples:
   armwright doctor                                 # check whether this machine meets armwright's requirements
-  armwright doctor results/q1-complex-ga-seed1     # check whether the files of this run are intact
+  armwright doctor results/irb4600-auto-seed1     # check whether the files of this run are intact
   armwright doctor results/q1                      # check all cells of a study
   armwright doctor results/q1 --repair             # make a copy, results/q1.repaired, without damaged records
   armwright doctor results/q1 --json | jq .damaged

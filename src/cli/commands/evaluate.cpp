@@ -34,10 +34,10 @@ using nlohmann::json;
 
 constexpr const char* kEvaluateExamples = R"(Examples:
   armwright evaluate table-a10                     # a published design on the problem it was made for
-  armwright evaluate results/q1-complex-ga-seed1/winner.toml --problem q1-complex --cases 100
-  armwright evaluate table-a10 --problem q2-e6 --set task.load_kg=20 --json
+  armwright evaluate results/irb4600-auto-seed1/winner.toml --problem irb4600 --cases 100
+  armwright evaluate table-a10 --set task.load_kg=20 --json
   armwright evaluate start --robot my.urdf         # the start design for an arm of your own, before tuning
-  armwright evaluate table-a5 --problem q1-complex --trajectory arm.csv --trajectory-case 7
+  armwright evaluate table-a5 --trajectory arm.csv --trajectory-case 7
   armwright evaluate start --robot my.urdf --motion trajectory.yaml   # do the controllers follow a planned motion?
 
 Terms: a test case is a sequence of points that the target visits, in the frame of the robot's base. The error of a

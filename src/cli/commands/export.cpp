@@ -17,7 +17,7 @@ namespace armwright {
 namespace {
 
 constexpr const char* kExportExamples = R"(Examples:
-  armwright export results/q1-complex-ga-seed1 --format csv
+  armwright export results/irb4600-auto-seed1 --format csv
   armwright export results/q1 --format ioh --out q1-ioh       # a whole study, for IOHanalyzer
   armwright export results/q1 --format coco                   # for cocopp
   armwright export results/my-arm-ga-seed1 --format ros2-control   # the winner's gains for the robot
@@ -32,10 +32,12 @@ struct ExportOptions {
   std::string folder;
   std::string format;
   std::string out;
+  bool force = false;
 };
 
 int run_export(const ExportOptions& options) {
-  const ExportSummary summary = export_runs(options.folder, options.format, options.out);
+  const ExportSummary summary =
+      export_runs(options.folder, options.format, options.out, options.force);
   const std::string folder = sanitize(summary.folder.string());
   if (!summary.files.empty()) {
     write_stdout(fmt::format("{} as {} in {}: {}\n", summary.winner, options.format, folder,
@@ -74,6 +76,10 @@ void add_export(CLI::App& app, Session& session) {
       ->add_option("--out", options->out,
                    "The new folder (default: FOLDER/export-FORMAT); nothing is overwritten")
       ->type_name("DIR");
+  command->add_flag(
+      "--force", options->force,
+      "Write ros2-control, urdf or datasheet of a winner that fails test cases or is\n"
+      "not better than the start");
   command->callback(
       [options, &session] { session.action = [options] { return run_export(*options); }; });
 }

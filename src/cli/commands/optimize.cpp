@@ -20,23 +20,26 @@
 #include "cli/terminal/terminal.hpp"
 #include "cli/views/result_view.hpp"
 #include "problems/config/path_survey.hpp"
+#include "report/evidence/health.hpp"
 #include "study/run/run.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run/run_observer.hpp"
+#include "study/verification/winner_check.hpp"
 
 namespace armwright {
 namespace {
 
 constexpr const char* kOptimizeExamples = R"(Examples:
-  armwright optimize q1-complex                    # as in the thesis: its genetic algorithm, seed 1
+  armwright optimize q1-complex                    # the optimizer auto chooses one; seed 1
   armwright optimize q2-e6 --optimizer ga --opt population=50 --seed 7 --budget 20000
   armwright optimize q1-complex --schedule fixed:10 --time-limit 10m --out results/robust
   armwright optimize my.toml --set task.load_kg=20 --set sets.test_cases=100 --json
   armwright optimize --robot my.urdf --base base_link --tip tool0   # an arm of your own
 
 If Ctrl-C, a time limit or a crash interrupts the run, the same command resumes it. If the run is complete, the command
-shows its result and does not run again. If the command differs from the one recorded in the folder, it is refused with a
-list of the differences; --new begins another folder. The folder holds the winner (winner.toml), all numbers
+shows its result and does not run again. With a larger --budget it continues the run (docs/journal.md). If the command
+differs otherwise from the one recorded in the folder, it is refused with a list of the differences; --new begins another
+folder. The name of the default folder shows what was set. The folder holds the winner (winner.toml), all numbers
 (result.json, results.sqlite, convergence.csv) and the journal of every evaluation.
 
 Terms: a design is the gains and effort limits of all joints. A case is one path of the moving target. The budget
@@ -46,8 +49,10 @@ cases that are hard for the designs, and growing:K:FACTOR begins with the first 
 whenever progress is within the noise between cases. Racing spends fewer cases on bad designs (docs/racing.md): halving:4:2 gives all
 designs of a generation 4 cases, the better half of the designs gets 8, and so on; abandonment:1:4 checks every 4 cases
 and abandons a design that is certain to be worse than 1 times the best. At the end, the best designs are judged on the
-validation set and the winner on the test set; the budget does not count these cases. The seed determines the
-optimizer's random numbers; the same seed gives the same result on any number of threads.)";
+validation set and the winner on the test set; the budget does not count these cases. Then a short check simulates the
+winner of an arm under other conditions: another engine, more physics steps, other masses, friction and a sensor
+(docs/verify.md). The seed determines the optimizer's random numbers; the same seed gives the same result on any number
+of threads.)";
 
 struct OptimizeOptions : PlanOptions {
   std::string jobs;
@@ -61,7 +66,7 @@ struct OptimizeOptions : PlanOptions {
 // needs settings (find_old_settings()), returns them; `options` and the plan get them too.
 std::vector<std::string> make_request(OptimizeOptions& options, RunRequest& request) {
   request.plan = options.make_plan();
-  request.folder = options.folder.choose(make_run_name(request.plan));
+  request.folder = options.folder.choose(make_folder_name(request.plan, options.get_overrides()));
   std::vector<std::string> old =
       find_old_settings(request.folder, request.plan.problem, options.overrides.set);
   if (!old.empty()) {
@@ -167,25 +172,66 @@ std::string describe_rest(const OptimizeOptions& options, const RunRequest& requ
   return "note: " + describe_unused(result) + ". " + way;
 }
 
-// Returns commands to try next. They begin with the program's name as the user typed it.
+// Returns a note on the variables of the winner that lie at a bound of the box, at most three by
+// name; empty if there are none.
+std::string describe_reached_bounds(const RunResult& result,
+                                    const std::vector<DecisionVariable>& variables) {
+  constexpr std::size_t kMostNamed = 3;
+  if (!result.winner) {
+    return "";
+  }
+  const std::vector<double>& x = result.judged[*result.winner].candidate.x;
+  std::vector<VariablePlace> places = list_bound_places(variables, x);
+  std::erase_if(places, [](const VariablePlace& one) { return one.to.distance > kNearBound; });
+  if (places.empty()) {
+    return "";
+  }
+  std::vector<std::string> named;
+  std::vector<std::string> ways;
+  for (const auto& [index, to] : places) {
+    const DecisionVariable& variable = variables[index];
+    const std::string way = to.is_upper ? variable.upper_widening : variable.lower_widening;
+    if (!way.empty() && std::ranges::find(ways, way) == ways.end()) {
+      ways.push_back(way);
+    }
+    if (named.size() < kMostNamed) {
+      const double bound = to.is_upper ? variable.upper : variable.lower;
+      named.push_back(fmt::format("{} lies at its {} bound ({}{}{})", sanitize(variable.name),
+                                  to.is_upper ? "upper" : "lower", format_significant(bound),
+                                  variable.unit.empty() ? "" : " ", sanitize(variable.unit)));
+    }
+  }
+  const std::size_t more = places.size() - named.size();
+  return fmt::format("note: {}{}{}", join(named, ", "),
+                     more == 0 ? "" : fmt::format(", and {} more at theirs", more),
+                     ways.empty()
+                         ? ""
+                         : fmt::format("; if the bound is not physical, widen the box with {}",
+                                       join(ways, " or ")));
+}
+
+// Returns commands to try next.
 std::string describe_next(const OptimizeOptions& options, const RunRequest& request,
-                          const std::string& program, const Style& style) {
+                          const Session& session, const Style& style) {
   const std::filesystem::path& folder = request.folder;
-  const auto winner = folder / "winner.toml";
-  std::string text = "\n" + style.bold("Next") + "\n";
-  if (path_exists(winner)) {
-    std::vector<std::string> words = {program, "evaluate", winner.string(), "--problem",
+  std::string text = describe_reading(folder, session, style);
+  if (const auto winner = folder / "winner.toml"; path_exists(winner)) {
+    std::vector<std::string> words = {"evaluate", winner.string(), "--problem",
                                       options.get_problem()};
     for (const std::string& change : options.overrides.get()) {
       words.insert(words.end(), {"--set", change});
     }
+    std::vector<std::string> verify = words;
     if (!request.plan.problem.problem->description().has_single_case) {
       words.insert(words.end(), {"--test-set", "3"});
     }
-    text += fmt::format("  {}\n", sanitize(quote_command(words)));
+    text += fmt::format("  {}\n", quote_own_command(session, words));
+    if (path_exists(folder / kCheckFile)) {
+      verify.front() = "verify";
+      text += fmt::format("  {}\n", quote_own_command(session, verify));
+    }
   }
-  const std::vector<std::string> show = {program, "show", folder.string()};
-  return text + fmt::format("  {}\n", sanitize(quote_command(show)));
+  return text;
 }
 
 int run_optimize(OptimizeOptions options, Session& session) {
@@ -223,6 +269,10 @@ int run_optimize(OptimizeOptions options, Session& session) {
   request.executor = coordinator.get();
   const auto result = execute_run(request, session.stop, observer);
   job.end_workers(std::move(coordinator));
+  const ProblemLoader load = [&](const std::vector<std::string>& changes) {
+    return load_problem(options.get_problem(), replace_overrides(options.get_overrides(), changes));
+  };
+  const bool is_checked = !result || check_winner(request, *result, load, session.stop, observer);
 
   bar.clear();
   if (result && !result->failure.empty()) {
@@ -234,12 +284,24 @@ int run_optimize(OptimizeOptions options, Session& session) {
   if (!result) {
     return end_stopped(session, request.command_line);
   }
+  if (const std::string note =
+          describe_reached_bounds(*result, request.plan.problem.problem->description().variables);
+      !options.quiet && !note.empty()) {
+    write_message(note);
+  }
   if (options.json) {
-    write_stdout(to_json(*result));
+    write_stdout(make_result_json(*result, request.folder));
   } else {
     const Style style = make_style(Stream::out, session.color);
     write_stdout(describe_result(*result, request.folder, style) +
-                 describe_next(options, request, session.command_line.front(), style));
+                 describe_next(options, request, session, style));
+  }
+  if (!is_checked) {
+    write_message(
+        fmt::format("{}; the run is complete, and its winner is not checked under other "
+                    "conditions. The same command checks it",
+                    describe_stop(session.stop.reason())));
+    return get_stop_code(session.stop.reason());
   }
   return get_result_code(*result);
 }
@@ -275,7 +337,7 @@ void add_optimize(CLI::App& app, Session& session) {
       ->type_name("N");
   add_jobs_flag(*command, options->jobs);
   add_time_limit_flag(*command, options->time_limit);
-  options->folder.add_to(*command, "run", "results/PROBLEM-OPTIMIZER-seedN");
+  options->folder.add_to(*command, "run", "results/PROBLEM-OPTIMIZER-seedN and what was set");
   command->add_flag("--json", options->json, "Print the result as JSON")->group("Output");
   command->add_flag("--quiet,-q", options->quiet, "Show no progress")->group("Output");
   command->callback([options, &session] {

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "optimizers/table/optimizer_table.hpp"
+#include "process/command_words.hpp"
 
 namespace armwright {
 
@@ -26,7 +27,8 @@ void PlanOptions::add_to(CLI::App& command) {
       ->envname("ARMWRIGHT_SEED");
   command
       .add_option("--budget", budget,
-                  "Number of training cases to simulate (default: the problem's)")
+                  "Number of training cases to simulate, as 5000, 1e5 or 20k (default: the\n"
+                  "problem's)")
       ->type_name("CASES");
 }
 
@@ -56,6 +58,11 @@ RunPlan PlanOptions::make_plan() const {
   plan.seed = static_cast<std::uint64_t>(
       parse_count(is_from_variable ? "the environment variable ARMWRIGHT_SEED" : "--seed", seed, 0,
                   std::numeric_limits<std::int64_t>::max()));
+  if (is_interpreter(optimizer) && !suggest_exec(problem).empty()) {
+    // The shell has split --optimizer python3 mine.py, so that the script became the problem.
+    throw Error(ErrorKind::usage,
+                describe_missing_exec("optimizer", optimizer + " " + problem, "--optimizer "));
+  }
   plan.problem = load_problem(get_problem(), get_overrides());
   plan.optimizer = load_optimizer(optimizer.empty() ? plan.problem.optimizer : optimizer);
   plan.options = Options::parse(plan.optimizer.name, plan.optimizer.options, opt);

@@ -21,10 +21,10 @@ namespace armwright {
 namespace {
 
 constexpr const char* kPlotExamples = R"(Examples:
-  armwright plot results/q1-complex-ga-seed1       # all figures, to results/q1-complex-ga-seed1/figures
+  armwright plot results/irb4600-auto-seed1       # all figures, to results/irb4600-auto-seed1/figures
   armwright plot results/q1/report.html --list     # list the figures and their choices
   armwright plot results/q1/report.html --figure convergence --out - > convergence.svg
-  armwright plot results/q1-complex-ga-seed1 --figure joint-torques --choose joint=2 --size 800x400
+  armwright plot results/irb4600-auto-seed1 --figure joint-torques --choose joint=2 --size 800x400
 
 The figures are those of 'armwright report', drawn by the same code. From a page's file, nothing is simulated again.)";
 
@@ -105,7 +105,9 @@ std::vector<PlotEntry> choose_entries(const PlotOptions& options, const Plotter&
   for (const std::string& id : options.figures) {
     const auto found = std::ranges::find(plotter.entries(), id, &PlotEntry::id);
     if (found == plotter.entries().end()) {
-      throw Error(ErrorKind::usage, describe_unknown("figure", id, ids));
+      const std::vector<std::string> list = {"armwright", "plot", options.input.source, "--list"};
+      throw Error(ErrorKind::usage,
+                  describe_unknown("figure", id, ids, sanitize(quote_command(list))));
     }
     chosen.push_back(*found);
   }

@@ -18,10 +18,10 @@ namespace armwright {
 namespace {
 
 constexpr const char* kReportExamples = R"(Examples:
-  armwright report results/q1-complex-ga-seed1     # writes results/q1-complex-ga-seed1/report.html
+  armwright report results/irb4600-auto-seed1     # writes results/irb4600-auto-seed1/report.html
   armwright report results/q1 --out q1.html        # a page about a study
   armwright report results/q1-ga results/q1-cmaes  # compares two runs, or two studies: comparison.html
-  armwright report results/q1-complex-ga-seed1 --case test/2:17
+  armwright report results/irb4600-auto-seed1 --case test/2:17
   armwright report results/q1 --json | jq .verdict
 
 The page is a single file that opens from disk, without a network. For the run of an arm, it shows the motion in 3D.

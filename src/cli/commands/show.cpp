@@ -34,10 +34,10 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kShowExamples = R"(Examples:
-  armwright show results/q1-complex-ga-seed1
+  armwright show results/irb4600-auto-seed1
   armwright show results/q1                        # a study: its tables and verdict
-  armwright show results/q1-complex-ga-seed1 --json | jq .winner.test_summary
-  armwright show results/q1-complex-ga-seed1 --importance   # which variables matter
+  armwright show results/irb4600-auto-seed1 --json | jq .winner.test_summary
+  armwright show results/irb4600-auto-seed1 --importance   # which variables matter
 
 If a run or a study is not complete, the command prints how far it is and how to resume it. It changes nothing.
 'armwright status' shows more about the cells of a study that several processes or machines run.)";
@@ -172,7 +172,7 @@ int run_show(const ShowOptions& options, Session& session) {
   if (path_exists(folder / "result.json")) {
     const RunResult result = load_result(folder);
     if (options.json) {
-      write_stdout(to_json(result));
+      write_stdout(make_result_json(result, folder));
     } else if (path_exists(folder / kIdentificationFile)) {
       show_identification(folder, make_style(Stream::out, session.color));
     } else {

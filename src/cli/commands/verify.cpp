@@ -24,7 +24,7 @@
 #include "problems/config/design_file.hpp"
 #include "problems/config/problem_readers.hpp"
 #include "sim/engines/engine_table.hpp"
-#include "sim/tracking/elasticity.hpp"
+#include "study/verification/prepared_setting.hpp"
 
 namespace armwright {
 namespace {
@@ -34,14 +34,12 @@ using nlohmann::json;
 constexpr std::uint64_t kUsualCases = 50;
 constexpr std::uint64_t kIdentifiedCases =
     1000;  // of plants that an identification leaves possible
-constexpr const char* kSubstepsKey = "physics.substeps";
 // Presets for robots whose plant's file has what an identification left uncertain.
 constexpr std::string_view kIdentifiedPlants = "identified";
-constexpr int kMostSubsteps = 1000;  // that the key may have
 
 constexpr const char* kVerifyExamples = R"(Examples:
   armwright verify table-a10                       # a published design, on the problem it was made for
-  armwright verify results/q1-complex-ga-seed1/winner.toml --problem q1-complex --cases 200
+  armwright verify results/irb4600-auto-seed1/winner.toml --problem irb4600 --cases 200
   armwright verify table-a5 --set task.load_kg=5 --json
   armwright verify table-a1 --problem q1-complex --engines articulated --substeps 10 --cases 10000 \
       --perturbations none,friction,sensor,all
@@ -88,12 +86,6 @@ struct VerifiedDesign {
   // One per row: the loads, if they are shares of the robot's mass.
   std::vector<std::optional<std::pair<double, double>>> loads_kg;
 };
-
-VerifySetting get_own_setting(const TrackingProblem& problem) {
-  const TrackingConfig& config = problem.config();
-  return {config.engines.judging_name, config.task.physics.substeps, 1,
-          config.perturbation.applies_to(CaseRole::test) ? "" : kNoPerturbation};
-}
 
 std::string describe_setting(const VerifySetting& setting) {
   return fmt::format("{}, {}, {}", setting.engine,
@@ -217,78 +209,6 @@ std::string format_json(const VerifiedDesign& verified) {
          "\n";
 }
 
-// Returns the settings of the problem that change all joints beside its own changes.
-std::vector<std::string> list_scale_overrides(const PlantScales& changes, const PlantScales& own) {
-  std::vector<std::string> overrides;
-  const auto add = [&](const char* key, double value, double usual) {
-    if (value != usual) {
-      overrides.push_back(fmt::format("robot.{}={}", key, format_exact(value)));
-    }
-  };
-  add("friction_scale", own.friction * changes.friction, own.friction);
-  add("armature_scale", own.armature * changes.armature, own.armature);
-  add("stiffness_scale", own.stiffness * changes.stiffness, own.stiffness);
-  add("armature_share", std::max(own.armature_share, changes.armature_share), own.armature_share);
-  add("elastic_hz", changes.elastic_hz > 0 ? changes.elastic_hz : own.elastic_hz, own.elastic_hz);
-  return overrides;
-}
-
-// Returns the settings of the problem that make the setting's plants.
-std::vector<std::string> list_plant_overrides(const VerifySetting& setting,
-                                              const TrackingConfig& config) {
-  if (setting.perturbation.empty()) {
-    return {};
-  }
-  if (const OtherPlant* other = find_other_plant(setting.perturbation)) {
-    std::vector<std::string> overrides = list_scale_overrides(other->changes, config.plant_scales);
-    if (config.fitted_plant) {  // drawn values would replace those that are changed
-      overrides.emplace_back("perturbation.fitted=none");
-    }
-    return overrides;
-  }
-  if (setting.perturbation == kNoPerturbation) {
-    return config.perturbation.applies_to(CaseRole::test) ? make_overrides(Perturbation{})
-                                                          : std::vector<std::string>{};
-  }
-  if (config.perturbation.changes_anything()) {
-    Perturbation plants =
-        load_perturbation(setting.perturbation, {config.robot, config.start, config.fitted_plant});
-    plants.where =
-        Perturbation::Where::everywhere;  // also a preset that is meant for training only
-    return make_overrides(plants);
-  }
-  return {"perturbation.preset=" + setting.perturbation, "perturbation.apply_to=everywhere"};
-}
-
-// Returns all changes of the problem's file for this setting: those of the user, then those of the
-// setting.
-std::vector<std::string> list_overrides(const VerifyOptions& options, const VerifySetting& setting,
-                                        const LoadedProblem& base) {
-  const TrackingConfig& config = base.tracking()->config();
-  // Settings with other masses or another plant have the same task, each with its own substeps.
-  std::vector<std::string> changes = list_proposals(json::parse(base.resolved_json));
-  std::erase_if(changes,
-                [](const std::string& change) { return get_override_key(change) == kSubstepsKey; });
-  std::ranges::move(list_plant_overrides(setting, config), std::back_inserter(changes));
-  changes.push_back("physics.engine=" + setting.engine);
-  changes.push_back("physics.judging_engine=" + setting.engine);
-  // Designs are judged in double. Only some engines have a SIMD level.
-  changes.push_back("physics.precision=double");
-  if (!find_engine(setting.engine).simd) {
-    changes.push_back("physics.simd=auto");
-  }
-  changes.push_back(fmt::format("{}={}", kSubstepsKey, setting.substeps));
-  changes.push_back("robot.mass_scale=" + format_exact(config.mass_scale * setting.mass_factor));
-  std::vector<std::string> all;
-  for (std::string& own : options.overrides.get()) {
-    if (std::ranges::find(changes, get_override_key(own), get_override_key) == changes.end()) {
-      all.push_back(std::move(own));
-    }
-  }
-  std::ranges::move(changes, std::back_inserter(all));
-  return all;
-}
-
 // Returns the command that simulates one case again and writes its trajectory.
 std::string make_replay(const VerifyOptions& options, std::span<const std::string> overrides,
                         std::uint64_t number) {
@@ -380,61 +300,6 @@ VerifyMatrix choose_matrix(const VerifyOptions& options, const VerifySetting& ow
   return matrix;
 }
 
-// The problem of one setting, or the reason why it cannot be made.
-struct PreparedSetting {
-  VerifySetting setting;  // with the substeps that its springs need
-  std::vector<std::string> overrides;
-  std::optional<LoadedProblem> problem;
-  std::string fault;
-};
-
-// Returns whether the setting may get more substeps than it names. A setting with another number
-// than the design's own one shows what that number does, unless its plant is another one.
-bool may_need_substeps(const VerifySetting& setting, const TrackingConfig& own) {
-  const OtherPlant* const other = find_other_plant(setting.perturbation);
-  if (other == nullptr && setting.substeps != own.task.physics.substeps) {
-    return false;
-  }
-  return (other != nullptr && other->changes.elastic_hz > 0) ||
-         std::ranges::any_of(own.robot.joints,
-                             [](const Joint& joint) { return joint.plant.is_elastic(); });
-}
-
-// Returns the substeps that the springs of the problem's plants need; 0 if they have none.
-int count_needed_substeps(const TrackingConfig& config) {
-  const auto mode = find_fastest_mode(make_fastest_arm(config.robot, config.perturbation));
-  return mode ? count_substeps(*mode, config.task.control_period_s) : 0;
-}
-
-// Throws Error if the fault is in the design's own setting, or if a file cannot be read.
-PreparedSetting prepare_setting(const VerifyOptions& options, const DesignFile& design,
-                                const std::string& named, const VerifySetting& setting,
-                                const LoadedProblem& base, bool is_own) {
-  PreparedSetting prepared{setting, {}, {}, {}};
-  const auto load = [&](int substeps) {
-    prepared.setting.substeps = substeps;
-    prepared.overrides = list_overrides(options, prepared.setting, base);
-    return load_problem_of_design(design, named, prepared.overrides, true);
-  };
-  try {
-    int substeps = setting.substeps;
-    if (!is_own && may_need_substeps(setting, base.tracking()->config())) {
-      const LoadedProblem finest = load(kMostSubsteps);
-      const int needed = count_needed_substeps(finest.tracking()->config());
-      prepared.setting.springs = needed >= substeps;
-      substeps = std::max(substeps, needed);
-    }
-    prepared.problem = load(substeps);
-  } catch (const Error& error) {
-    if (is_own || error.kind() == ErrorKind::io) {
-      throw;
-    }
-    prepared.setting = setting;
-    prepared.fault = error.what();
-  }
-  return prepared;
-}
-
 int run_verify(const VerifyOptions& options, Session& session) {
   const unsigned jobs = parse_jobs(options.jobs);
   const std::string named = options.overrides.choose_problem(options.problem);
@@ -449,9 +314,13 @@ int run_verify(const VerifyOptions& options, Session& session) {
   const VerifySetting own_setting = get_own_setting(tracking);
   // All settings are validated before the first is simulated.
   std::vector<PreparedSetting> prepared;
+  const std::vector<std::string> own_overrides = options.overrides.get();
+  const ProblemLoader load = [&, &file = design](const std::vector<std::string>& changes) {
+    return load_problem_of_design(file, named, replace_overrides(own_overrides, changes), true);
+  };
   for (const VerifySetting& setting :
        list_verify_settings(own_setting, choose_matrix(options, own_setting, tracking.config()))) {
-    PreparedSetting one = prepare_setting(options, design, named, setting, base, prepared.empty());
+    PreparedSetting one = prepare_setting(setting, base, load, prepared.empty());
     // Springs can give two settings the same substeps.
     if (std::ranges::find(prepared, one.setting, &PreparedSetting::setting) == prepared.end()) {
       prepared.push_back(std::move(one));
@@ -475,21 +344,13 @@ int run_verify(const VerifyOptions& options, Session& session) {
   }
   for (std::size_t i = 0; i < prepared.size(); ++i) {
     PreparedSetting& one = prepared[i];
-    std::optional<ErrorSurvey> survey;
     verified.loads_kg.emplace_back();
-    try {
-      if (one.problem) {
-        const Perturbation& plants = one.problem->tracking()->config().perturbation;
-        verified.loads_kg.back() = plants.load_share ? plants.load_kg : std::nullopt;
-        survey = survey_with_progress(*one.problem->tracking(), design.design,
-                                      get_cases(one.setting), jobs, session.stop, bar, progress);
-      }
-    } catch (const Error& error) {
-      if (i == 0 || error.kind() == ErrorKind::io) {
-        throw;
-      }
-      one.fault = error.what();
+    if (one.problem) {
+      const Perturbation& plants = one.problem->tracking()->config().perturbation;
+      verified.loads_kg.back() = plants.load_share ? plants.load_kg : std::nullopt;
     }
+    std::optional<ErrorSurvey> survey = survey_setting(one, design.design, get_cases(one.setting),
+                                                       jobs, session.stop, bar, progress, i == 0);
     one.problem.reset();  // frees its target tables
     if (!survey && one.fault.empty()) {
       bar.clear();
@@ -508,7 +369,9 @@ int run_verify(const VerifyOptions& options, Session& session) {
     verified.rows.push_back(judge_setting(one.setting, survey->summary, own));
     verified.replays.push_back(survey->summary.failures == 0
                                    ? ""
-                                   : make_replay(options, one.overrides, survey->first_failure));
+                                   : make_replay(options,
+                                                 replace_overrides(own_overrides, one.changes),
+                                                 survey->first_failure));
     verified.surveys.push_back(std::move(*survey));
   }
   bar.clear();

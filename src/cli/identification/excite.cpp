@@ -254,7 +254,8 @@ void add_excite(CLI::App& app, Session& session) {
       ->type_name("FILE");
   command->add_option("--noise-seed", options->noise_seed, "Seed of that log's noise (default: 1)")
       ->type_name("N");
-  options->add_run_flags(*command, "results/ROBOT-motion-OPTIMIZER-seedN", "excitation.json");
+  options->add_run_flags(*command, "results/ROBOT-motion-OPTIMIZER-seedN and what was set",
+                         "excitation.json");
   command->callback([options, &session] {
     session.shares_work = true;
     session.action = [options, &session] { return run_excite(*options, session); };

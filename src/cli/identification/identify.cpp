@@ -28,7 +28,8 @@ constexpr const char* kIdentifyExamples = R"(Examples:
   armwright identify run.mcap --robot my.urdf --fit friction,armature,payload
   armwright identify log.csv --robot my.urdf --column position_1=q1 --column time=t --unit position=deg
   armwright identify log.csv --robot my.urdf --gear-ratio joint_1=101 --sign joint_3=-1
-  armwright optimize --robot my.urdf --plant results/my-plant-ceres:lm-seed1/plant.toml
+  armwright identify a.csv --robot my.urdf --out plant
+  armwright optimize --robot my.urdf --plant plant/plant.toml
 
 The logs are read, checked, filtered below --cutoff without phase, and differentiated. The parameters start at those of
 linear least squares on the inverse dynamics; then the optimizer searches (default: ceres:lm). The folder gets
@@ -150,7 +151,8 @@ void add_identify(CLI::App& app, Session& session) {
       ->add_option("--payload-com", options->payload_com,
                    "Its centre of mass in the tip's frame (default: 0,0,0)")
       ->type_name("X,Y,Z");
-  options->add_run_flags(*command, "results/ROBOT-plant-OPTIMIZER-seedN", "identification.json");
+  options->add_run_flags(*command, "results/ROBOT-plant-OPTIMIZER-seedN and what was set",
+                         "identification.json");
   command->callback([options, &session] {
     session.shares_work = true;
     session.action = [options, &session] { return run_identify(*options, session); };

@@ -58,7 +58,7 @@ RunRequest PlantRunOptions::make_request(Session& session) const {
   request.jobs = parse_jobs(jobs);
   apply_time_limit(time_limit, session.stop);
   request.plan = make_plan();
-  request.folder = folder.choose(make_run_name(request.plan));
+  request.folder = folder.choose(make_folder_name(request.plan, get_overrides()));
   request.command_line = session.command_line;
   return request;
 }

@@ -16,7 +16,7 @@ using nlohmann::json;
 // Makes a kind whose items have only a name and a summary.
 ListKind make_plain_kind(const std::string& name, std::vector<ListItem> (*list)()) {
   const std::string what = name.substr(0, name.size() - 1);  // "engines" -> "engine"
-  const auto find = [what, list](const std::string& wanted) {
+  const auto find = [what, name, list](const std::string& wanted) {
     std::vector<std::string> names;
     for (const ListItem& item : list()) {
       if (item.name == wanted) {
@@ -24,7 +24,7 @@ ListKind make_plain_kind(const std::string& name, std::vector<ListItem> (*list)(
       }
       names.push_back(item.name);
     }
-    throw Error(ErrorKind::usage, describe_unknown(what, wanted, names));
+    throw Error(ErrorKind::usage, describe_unknown(what, wanted, names, "armwright list " + name));
   };
   const auto explain = [find](const std::string& wanted, const Style& style) {
     const ListItem item = find(wanted);

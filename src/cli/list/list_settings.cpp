@@ -22,6 +22,12 @@ using nlohmann::json;
 
 // One kind of configuration file.
 struct SettingFile {
+  SettingFile(std::string name, std::string lines, const SettingTable& table)
+      : prefix(table.listed_as.value()),
+        title(std::move(name)),
+        words(std::move(lines)),
+        settings(list_settings(table)) {}
+
   std::string prefix;  // of the names; empty for problems, whose keys are those of --set
   std::string title;
   std::string words;  // Markdown
@@ -30,23 +36,23 @@ struct SettingFile {
 
 std::vector<SettingFile> list_setting_files() {
   return {
-      {"", "Problems",
+      {"Problems",
        "`configs/problems/NAME.toml`, or a file of your own. `--set KEY=VALUE` changes a setting "
        "on the command line. `extends = \"NAME\"` starts from another problem and changes it; NAME "
        "is a file beside this one or a shipped problem.",
-       list_settings(problem_settings())},
-      {"study:", "Studies",
+       problem_settings()},
+      {"Studies",
        "`configs/studies/NAME.toml`, or a file of your own, for `armwright compare` "
        "([comparing.md](../comparing.md)). `extends` works as in problems.",
-       list_settings(study_settings())},
-      {"design:", "Designs",
+       study_settings()},
+      {"Designs",
        "`configs/designs/NAME.toml`, or the `winner.toml` of a run. The controller determines "
        "which gains there are.",
-       list_settings(design_settings())},
-      {"plant:", "Plants",
+       design_settings()},
+      {"Plants",
        "`NAME.plant.toml` beside `NAME.urdf`, or a file that `robot.plant` names "
        "([robots.md](../robots.md)). A table `[joint.NAME]` describes the joint NAME of the URDF.",
-       list_settings(plant_settings())},
+       plant_settings()},
   };
 }
 
@@ -187,7 +193,8 @@ std::string format_setting_page(const std::string& name) {
       "All keys of the configuration files, as `armwright list settings` prints them. Units are "
       "SI, and a key's name ends with its unit. A key without a default is required, unless its "
       "meaning says what its absence means. Unknown keys are refused, and the nearest valid key is "
-      "suggested. In `--set`, a key is named with its table: `task.speed_m_per_s`.\n",
+      "suggested. In `--set`, a key is named with its table: `task.speed_m_per_s`. An integer may "
+      "also be written `1e3`, `\"10k\"` or `\"2M\"`, in `--set` without the quotes.\n",
       kGeneratedPage);
   for (const SettingFile& file : list_setting_files()) {
     text += fmt::format("\n## {}\n\n{}\n", file.title, file.words) + format_tables(file.settings);

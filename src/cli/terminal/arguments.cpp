@@ -37,9 +37,11 @@ constexpr std::int64_t kMostJobs = 1024;
 
 std::int64_t parse_count(std::string_view flag, std::string_view text, std::int64_t lower,
                          std::int64_t upper) {
-  const auto value = parse_integer(text);
+  const auto value = parse_count(text);
   if (!value || *value < lower || *value > upper) {
-    refuse(flag, text, fmt::format("an integer from {} to {}", lower, upper));
+    refuse(flag, text,
+           fmt::format("an integer from {} to {}{}", lower, upper,
+                       value ? "" : "; 1e3, 10k and 2M are integers too"));
   }
   return *value;
 }
@@ -250,6 +252,15 @@ std::string_view get_override_key(std::string_view assignment) {
   std::string_view key = assignment.substr(0, assignment.find('='));
   key.remove_prefix(std::min(key.size(), key.find_first_not_of(kBlanks)));
   return key.substr(0, key.find_last_not_of(kBlanks) + 1);
+}
+
+std::vector<std::string> replace_overrides(std::vector<std::string> own,
+                                           const std::vector<std::string>& changes) {
+  std::erase_if(own, [&](const std::string& text) {
+    return std::ranges::find(changes, get_override_key(text), get_override_key) != changes.end();
+  });
+  std::ranges::copy(changes, std::back_inserter(own));
+  return own;
 }
 
 void add_robot_flags(CLI::App& command, std::string& base, std::string& tip,

@@ -130,6 +130,9 @@ struct OverrideOptions {
 };
 // Returns the part of a KEY=VALUE text before the '=', without blanks around it.
 std::string_view get_override_key(std::string_view assignment);
+// Returns the texts of `own` whose keys `changes` do not have, and then the changes.
+std::vector<std::string> replace_overrides(std::vector<std::string> own,
+                                           const std::vector<std::string>& changes);
 
 // The flags --test-set, --test-cases and --cases, which choose the cases that a design is evaluated
 // on.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/folder.hpp"
 #include "base/folder_checksums.hpp"
@@ -11,6 +12,7 @@
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/session.hpp"
 #include "cli/views/requirement_view.hpp"
+#include "cli/views/verification.hpp"
 #include "problems/config/values_file.hpp"
 #include "sim/tracking/designed_arm.hpp"
 
@@ -27,6 +29,7 @@ constexpr RunFile kRunFiles[] = {
     {"winner-trajectory.csv", "the winner's trajectory on the first test case"},
     {"front.csv", "the designs on the front, with their results on the validation set"},
     {"result.json", "all numbers of this result"},
+    {"check.json", "the winner under other conditions"},
     {"convergence.csv", "the best value over the evaluations"},
     {"results.sqlite", "every evaluation, as SQL tables"},
     {"journal", "every evaluation; resuming reads it"},
@@ -315,6 +318,9 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
     text += style.red(describe_no_winner(result)) + "\n\n";
   } else {
     text += format_winner(result, folder, style) + "\n";
+    for (const std::string& fault : list_faults(result)) {
+      text += style.red("Do not use this design: " + fault + ".") + "\n";
+    }
     text += is_tracking(result) ? format_tracking_test(result, style)
                                 : format_function_test(result, style);
     text += "\n";
@@ -326,6 +332,12 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
     }
     if (result.published.error_m || result.published.total_torque_n_m) {
       text += format_published(result, style) + "\n";
+    } else if (!result.published.difference.empty()) {
+      text += fmt::format("The published winner ({}) cannot be compared: {}.\n\n",
+                          sanitize(result.published.where), sanitize(result.published.difference));
+    }
+    if (result.tracking) {
+      text += describe_check(load_check(folder), style) + "\n";
     }
   }
   Table files({{"", false}, {"", false}});
@@ -335,6 +347,16 @@ std::string describe_result(const RunResult& result, const std::filesystem::path
     }
   }
   return text + style.bold("Files in " + sanitize(folder.string())) + "\n" + files.format(style, 2);
+}
+
+std::string make_result_json(const RunResult& result, const std::filesystem::path& folder) {
+  const auto check = result.winner ? load_check(folder) : std::nullopt;
+  if (!check) {
+    return to_json(result);
+  }
+  nlohmann::json j = nlohmann::json::parse(to_json(result));
+  j["winner"]["check"] = nlohmann::json::parse(to_json(*check));
+  return j.dump(1) + "\n";
 }
 
 std::string describe_judged(const RunResult& result, const Style& style) {
@@ -363,6 +385,13 @@ std::string describe_judged(const RunResult& result, const Style& style) {
     table.add_row(std::move(cells));
   }
   return style.bold("Judged on the validation set") + "\n" + table.format(style, 2);
+}
+
+std::string describe_reading(const std::filesystem::path& folder, const Session& session,
+                             const Style& style) {
+  return fmt::format("\n{}\n  {}\n  {}\n", style.bold("Next"),
+                     quote_own_command(session, {"report", folder.string()}),
+                     quote_own_command(session, {"show", folder.string()}));
 }
 
 Table make_summary_table(const ErrorSummary& summary, const std::optional<MotionSummary>& motion) {
@@ -398,7 +427,8 @@ void add_efforts(const EffortTotals& efforts, Table& table) {
 }
 
 int get_result_code(const RunResult& result) {
-  const bool good = result.failure.empty() && result.winner && is_proven_feasible(result.test);
+  const bool good = result.failure.empty() && result.winner && is_proven_feasible(result.test) &&
+                    list_faults(result).empty();
   return good ? exit_code::kDone : exit_code::kFailed;
 }
 

@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "cli/terminal/format.hpp"
 #include "cli/terminal/table.hpp"
+#include "cli/views/result_view.hpp"
 #include "study/analysis/final_check.hpp"
 #include "study/analysis/study_tables.hpp"
 #include "study/analysis/verdict.hpp"
@@ -370,7 +371,8 @@ int end_study(const StudyPlan& plan, const std::filesystem::path& folder, unsign
   if (as_json) {
     write_stdout(to_json(plan, result));
   } else {
-    write_stdout(describe_study(plan, result, folder, session));
+    write_stdout(describe_study(plan, result, folder, session) +
+                 describe_reading(folder, session, make_style(Stream::out, session.color)));
   }
   const bool failed = std::ranges::any_of(
       result.cells, [](const CellOutcome& cell) { return !cell.failure.empty(); });

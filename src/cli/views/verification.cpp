@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <functional>
-#include <set>
+#include <sstream>
+#include <vector>
 
 #include "base/text.hpp"
 #include "cli/terminal/format.hpp"
+#include "cli/terminal/table.hpp"
 
 namespace armwright {
 namespace {
@@ -64,151 +66,7 @@ bool is_bad(const VerifyRow& row) {
   return row.verdict == Verdict::worse || row.verdict == Verdict::fails;
 }
 
-template <class Has>
-bool any_plant(const RobotModel& robot, const Has& has) {
-  return std::ranges::any_of(robot.joints, [&](const Joint& joint) { return has(joint.plant); });
-}
-
-bool has_friction(const RobotModel& robot) {
-  return any_plant(robot, [](const JointPlant& plant) { return plant.has_friction(); });
-}
-
-bool has_armature(const RobotModel& robot) {
-  return any_plant(robot, [](const JointPlant& plant) { return plant.armature > 0; });
-}
-
-bool is_elastic(const RobotModel& robot) {
-  return any_plant(robot, [](const JointPlant& plant) { return plant.is_elastic(); });
-}
-
-bool is_rigid_with_armature(const RobotModel& robot) {
-  return has_armature(robot) && !is_elastic(robot);
-}
-
-bool lacks_armature(const RobotModel& robot) {
-  return !has_armature(robot);
-}
-
-constexpr const char* kNoArmature =
-    "no joint of the robot has an armature (robot.plant); try added-rotors";
-// Half of the inertia that a joint moves: an assumption. The rotors of a PUMA 560 have more than
-// half of its shoulder's inertia.
-constexpr double kAddedArmatureShare = 0.5;
-// The motors of the axes 1 to 3 of a KUKA KR300 swing at 12 to 15 Hz: their stiffnesses are 4.1 to
-// 7.5e6 N m/rad, their armatures 609 to 844 kg m^2 (Weigand et al., 2021).
-constexpr double kElastic_hz = 15;
-
 }  // namespace
-
-std::vector<VerifySetting> list_verify_settings(const VerifySetting& own,
-                                                const VerifyMatrix& matrix) {
-  std::vector<std::string> engines = matrix.engines;
-  std::ranges::stable_partition(engines,
-                                [&](const std::string& engine) { return engine == own.engine; });
-  std::vector<VerifySetting> settings = {own};
-  const auto add = [&](const std::string& engine, int substeps, const std::string& plant) {
-    VerifySetting setting{engine, substeps, 1, plant};
-    if (plant == kLighter || plant == kHeavier) {
-      setting.mass_factor = plant == kLighter ? 0.9 : 1.1;
-      setting.perturbation = own.perturbation;
-    }
-    if (std::ranges::find(settings, setting) == settings.end()) {
-      settings.push_back(std::move(setting));
-    }
-  };
-  for (const std::string& engine : engines) {
-    for (const int substeps : std::set(matrix.substeps.begin(), matrix.substeps.end())) {
-      for (const std::string& plant : matrix.plants) {
-        add(engine, substeps, plant);
-      }
-    }
-  }
-  for (const std::string& plant : matrix.own_plants) {
-    add(own.engine, own.substeps, plant);
-  }
-  return settings;
-}
-
-const std::vector<OtherPlant>& other_plants() {
-  static const std::vector<OtherPlant> plants = {
-      {"more-friction",
-       "friction x 2",
-       {.friction = 2},
-       has_friction,
-       "no joint of the robot has friction (<dynamics>, robot.plant); the preset friction adds "
-       "some"},
-      {"lighter-rotors", "rotors -50 %", {.armature = 0.5}, has_armature, kNoArmature},
-      {"heavier-rotors", "rotors +50 %", {.armature = 1.5}, has_armature, kNoArmature},
-      {"added-rotors",
-       "rotors added",
-       {.armature_share = kAddedArmatureShare},
-       lacks_armature,
-       "a joint of the robot has an armature; try heavier-rotors"},
-      {"softer",
-       "stiffness -50 %",
-       {.stiffness = 0.5},
-       is_elastic,
-       "no joint of the robot is elastic (robot.plant); try elastic or elastic-rotors"},
-      {"elastic",
-       "elastic",
-       {.elastic_hz = kElastic_hz},
-       is_rigid_with_armature,
-       "no joint of the robot has an armature, or one is elastic (robot.plant); try "
-       "elastic-rotors or softer"},
-      {"elastic-rotors",
-       "elastic, rotors added",
-       {.armature_share = kAddedArmatureShare, .elastic_hz = kElastic_hz},
-       lacks_armature,
-       "a joint of the robot has an armature; try elastic or softer"}};
-  return plants;
-}
-
-const OtherPlant* find_other_plant(const std::string& name) {
-  const auto found = std::ranges::find(other_plants(), name, &OtherPlant::name);
-  return found == other_plants().end() ? nullptr : &*found;
-}
-
-std::string describe_plant(const VerifySetting& setting) {
-  if (const OtherPlant* plant = find_other_plant(setting.perturbation)) {
-    return plant->words;
-  }
-  if (setting.mass_factor != 1) {
-    return fmt::format("masses {:+.0f} %", 100 * (setting.mass_factor - 1));
-  }
-  return setting.perturbation.empty() ? "own" : setting.perturbation;
-}
-
-const char* to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::holds:
-      return "holds";
-    case Verdict::worse:
-      return "worse";
-    case Verdict::fails:
-      return "fails";
-    case Verdict::missing:
-      return "not simulated";
-  }
-  return "?";
-}
-
-VerifyRow judge_setting(const VerifySetting& setting, const ErrorSummary& summary,
-                        const ErrorSummary& own) {
-  VerifyRow row{setting, summary, {}, Verdict::holds};
-  if (summary.median && own.median && *own.median > 0) {
-    row.ratio = *summary.median / *own.median;
-  }
-  if (!summary.median || summary.failures > own.failures || row.ratio > kFailRatio) {
-    row.verdict = Verdict::fails;
-  } else if (row.ratio > kWorseRatio) {
-    row.verdict = Verdict::worse;
-  }
-  return row;
-}
-
-VerifyRow make_missing_row(const VerifySetting& setting, const std::string& fault) {
-  return {setting, {}, {}, Verdict::missing, fault};
-}
 
 std::string conclude(const std::string& design, std::span<const VerifyRow> rows) {
   const VerifyRow& own = rows.front();
@@ -258,6 +116,34 @@ std::string conclude(const std::string& design, std::span<const VerifyRow> rows)
   if (const Counts counts = count_verdicts(mixed); counts.simulated > 0) {
     text += fmt::format(" If several of these change at once, it holds in {} of {} settings.",
                         counts.holding, counts.simulated);
+  }
+  return text;
+}
+
+std::string describe_check(const std::optional<WinnerCheck>& check, const Style& style) {
+  if (!check) {
+    return style.bold("Under other conditions") + "\n  " +
+           style.yellow("not checked; armwright verify checks it") + "\n";
+  }
+  std::string text = style.bold("Under other conditions") +
+                     fmt::format(" (the first {} of {}; own error {} mm, at most {} mm works)\n",
+                                 format_count(check->own.cases, "case"), sanitize(check->test_set),
+                                 format_mm(check->own.mean), format_mm(check->limit_m));
+  Table table({{"", false}, {"", false}, {"", false}});
+  for (const CheckedSetting& checked : check->settings) {
+    table.add_row({sanitize(checked.name), describe_outcome(checked),
+                   checked.verdict == Verdict::missing ? sanitize(checked.fault)
+                   : checked.summary.mean              ? format_mm(checked.summary.mean) + " mm"
+                                                       : ""});
+  }
+  std::istringstream lines(table.format(style, 2));
+  std::string line;
+  for (const CheckedSetting& checked : check->settings) {
+    std::getline(lines, line);
+    text += (checked.verdict == Verdict::fails   ? style.red(line)
+             : checked.verdict == Verdict::worse ? style.yellow(line)
+                                                 : line) +
+            "\n";
   }
   return text;
 }

@@ -37,6 +37,16 @@ class RandomSearch : public Optimizer {
   std::size_t batch_;
 };
 
+// Evaluates the problem's start and nothing else: what the others have to be better than.
+class StartOnly : public Optimizer {
+ public:
+  void minimize(Evaluator& evaluator, std::uint64_t /*seed*/) override {
+    const std::vector<double> start = list_starts(evaluator.problem().variables);
+    evaluator.evaluate(std::span(&start, 1));
+    evaluator.explain_end("it evaluates the start only");
+  }
+};
+
 }  // namespace
 
 double draw_coordinate(const DecisionVariable& variable, RandomStream& random) {
@@ -52,25 +62,36 @@ double draw_coordinate(const DecisionVariable& variable, RandomStream& random) {
 }
 
 std::vector<OptimizerRow> make_random_search_rows() {
-  return {{
-      .name = "random",
-      .summary = "Random search: independent points, uniform on every variable's scale",
-      .source = "Brooks 1958, A discussion of random methods for seeking maxima",
-      .capabilities = {.bounds = true,
-                       .batch = true,
-                       .stochastic = true,
-                       .sampling = true,
-                       .integer = true,
-                       .categorical = true},
-      .options = {{.name = "batch",
-                   .description = "points asked for at a time; has no influence on the points",
-                   .fallback = std::int64_t{32},
-                   .lower = 1,
-                   .upper = 100000}},
-      .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
-        return std::make_unique<RandomSearch>(options);
+  return {
+      {
+          .name = "random",
+          .summary = "Random search: independent points, uniform on every variable's scale",
+          .source = "Brooks 1958, A discussion of random methods for seeking maxima",
+          .capabilities = {.bounds = true,
+                           .batch = true,
+                           .stochastic = true,
+                           .sampling = true,
+                           .integer = true,
+                           .categorical = true},
+          .options = {{.name = "batch",
+                       .description = "points asked for at a time; has no influence on the points",
+                       .fallback = std::int64_t{32},
+                       .lower = 1,
+                       .upper = 100000}},
+          .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
+            return std::make_unique<RandomSearch>(options);
+          },
       },
-  }};
+      {
+          .name = "start",
+          .summary = "The problem's start, evaluated once: the least to be better than",
+          .source = "the problem itself",
+          .capabilities = {.bounds = true, .sampling = true, .integer = true, .categorical = true},
+          .options = {},
+          .make = [](const Options&) -> std::unique_ptr<Optimizer> {
+            return std::make_unique<StartOnly>();
+          },
+      }};
 }
 
 }  // namespace armwright

@@ -7,7 +7,7 @@
 
 namespace armwright {
 
-// Returns the row random.
+// Returns the rows random and start.
 std::vector<OptimizerRow> make_random_search_rows();
 
 // Draws a value uniformly between the bounds, on the variable's own scale. It never lies outside

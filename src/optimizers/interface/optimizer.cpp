@@ -34,7 +34,7 @@ std::optional<OptionValue> parse_value(const OptionSpec& spec, const std::string
     return std::nullopt;
   }
   if (std::holds_alternative<std::int64_t>(spec.fallback)) {
-    const auto value = parse_integer(text);
+    const auto value = parse_count(text);
     const bool allowed = value && static_cast<double>(*value) >= spec.lower &&
                          static_cast<double>(*value) <= spec.upper;
     return allowed ? std::optional<OptionValue>(std::int64_t{*value}) : std::nullopt;
@@ -67,7 +67,9 @@ Options Options::parse(std::string_view optimizer, std::span<const OptionSpec> s
     if (spec == specs.end()) {
       std::vector<std::string> names;
       std::ranges::transform(specs, std::back_inserter(names), &OptionSpec::name);
-      refuse(describe_unknown("option", name, names));
+      const std::vector<std::string> list = {"armwright", "list", "optimizers",
+                                             std::string(optimizer)};
+      refuse(describe_unknown("option", name, names, sanitize(quote_command(list))));
     }
     if (const auto [earlier, is_new] = given.emplace(name, text); !is_new) {
       refuse(fmt::format("option '{}' is given twice, as '{}' and as '{}'; give it once", name,

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
+#include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
 #include "optimizers/interface/treated_problem.hpp"
@@ -10,6 +13,8 @@
 
 namespace armwright {
 namespace {
+
+constexpr const char* kPlannedOption = "evaluations";
 
 // The evaluator of the chosen optimizer: gives it the variables as it can treat them.
 class ChosenEvaluator : public Evaluator {
@@ -78,17 +83,22 @@ class ChosenEvaluator : public Evaluator {
 
 class Auto : public Optimizer {
  public:
-  explicit Auto(const Options& options) : rules_(options.get_text("rules")) {}
+  explicit Auto(const Options& options)
+      : rules_(options.get_text("rules")), evaluations_(options.get_integer(kPlannedOption)) {}
 
   void minimize(Evaluator& evaluator, std::uint64_t seed) override {
     const std::vector<AutoRule> rules = load_auto_rules(find_auto_rules(rules_));
-    AutoFeatures features = calc_auto_features(evaluator.problem(), evaluator.remaining(),
-                                               evaluator.may_change_cases());
+    const std::int64_t budget = evaluator.remaining();
+    const std::int64_t planned = evaluations_ == 0 ? budget : evaluations_;
+    AutoFeatures features =
+        calc_auto_features(evaluator.problem(), planned, evaluator.may_change_cases());
     evaluator.begin_generation();
-    const AutoRule& rule = choose_rule(rules, features, evaluator.problem(),
-                                       [&] { return is_rugged(evaluator, seed); });
-    evaluator.explain_choice(fmt::format("auto chose {} for {}. {}", describe_used(rule),
-                                         describe_features(features), rule.why));
+    std::optional<bool> rugged;
+    const AutoRule& rule = choose_rule(rules, features, evaluator.problem(), [&] {
+      return rugged.emplace(is_rugged(evaluator, seed, planned));
+    });
+    explain(rules, rule, features, budget, rugged, evaluator);
+    check_limit(rule, budget);
     const auto chosen =
         rule.row.make(Options::parse(rule.row.name, rule.row.options, rule.options));
     ChosenEvaluator inner(evaluator, rule.row.capabilities);
@@ -111,7 +121,40 @@ class Auto : public Optimizer {
   void log_to(const std::filesystem::path& file) override { log_ = file; }
 
  private:
-  std::string rules_;  // a path; empty: the shipped rules
+  // Says which optimizer was chosen, and whether the rules would choose it for the whole budget.
+  static void explain(const std::vector<AutoRule>& rules, const AutoRule& rule,
+                      const AutoFeatures& features, std::int64_t budget,
+                      const std::optional<bool>& rugged, Evaluator& evaluator) {
+    AutoFeatures now =
+        calc_auto_features(evaluator.problem(), budget, evaluator.may_change_cases());
+    bool is_known = true;
+    const AutoRule& own = choose_rule(rules, now, evaluator.problem(), [&] {
+      is_known = rugged.has_value();
+      return rugged.value_or(false);
+    });
+    const bool is_kept = &own != &rule || !is_known;
+    evaluator.explain_choice(is_kept ? fmt::format("kept {}, which auto chose for {}. {}",
+                                                   describe_used(rule), describe_features(features),
+                                                   rule.why)
+                                     : fmt::format("auto chose {} for {}. {}", describe_used(rule),
+                                                   describe_features(now), rule.why));
+  }
+
+  // The rules do not choose an optimizer beyond its limits, but a kept one may come to them.
+  static void check_limit(const AutoRule& rule, std::int64_t budget) {
+    const std::int64_t most = rule.row.limits.evaluations;
+    if (most > 0 && budget > most) {
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("optimizer '{}', which auto chose, is made for at most {} "
+                      "evaluations, and the budget pays for {}; give a smaller --budget, or "
+                      "begin a run with --new, for which auto chooses again",
+                      rule.row.name, most, budget));
+    }
+  }
+
+  std::string rules_;         // a path; empty: the shipped rules
+  std::int64_t evaluations_;  // with which it chooses; 0: those of the budget
   std::filesystem::path log_;
 };
 
@@ -135,10 +178,20 @@ std::vector<OptimizerRow> make_auto_rows() {
                        .categorical = true},
       .options = {{.name = "rules",
                    .description = "file of rules in place of the shipped ones (docs/auto.md)",
-                   .fallback = std::string()}},
+                   .fallback = std::string()},
+                  {.name = kPlannedOption,
+                   .description =
+                       "chooses as for a budget of this many evaluations; 0: that of the "
+                       "run. A run that is continued with a larger budget has the number "
+                       "with which it began",
+                   .fallback = std::int64_t{0},
+                   .lower = 0,
+                   .upper = kLargestInteger,
+                   .is_new = true}},
       .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
         return std::make_unique<Auto>(options);
       },
+      .pace_option = kPlannedOption,
   }};
 }
 

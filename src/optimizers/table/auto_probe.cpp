@@ -33,10 +33,10 @@ std::int64_t count_minima(std::span<const double> values) {
 
 }  // namespace
 
-bool is_rugged(Evaluator& evaluator, std::uint64_t seed) {
+bool is_rugged(Evaluator& evaluator, std::uint64_t seed, std::int64_t planned) {
   // The square of a quadratic residual, a polynomial of degree four, has at most two along a line.
   constexpr std::int64_t kMostSmooth = 2;
-  const std::int64_t points = std::min(evaluator.remaining() / kShare / kLines, kMostPoints);
+  const std::int64_t points = std::min(planned / kShare / kLines, kMostPoints);
   if (points < kFewestPoints) {
     return false;
   }

@@ -10,9 +10,9 @@
 namespace armwright {
 
 // Returns whether the probe has found more minima along a line than smooth functions have. It
-// evaluates one batch of at most 5 % of what the budget pays for: two lines between random points of
+// evaluates one batch of at most 5 % of the `planned` evaluations: two lines between random points of
 // the box, each with at most 25 points at equal distances. With too few evaluations for 10 points
 // per line, it evaluates nothing and returns false. Failed evaluations count as the largest values.
-bool is_rugged(Evaluator& evaluator, std::uint64_t seed);
+bool is_rugged(Evaluator& evaluator, std::uint64_t seed, std::int64_t planned);
 
 }  // namespace armwright

@@ -87,7 +87,8 @@ std::vector<std::string> optimizer_names() {
 const OptimizerRow& find_optimizer(std::string_view name) {
   const auto row = std::ranges::find(optimizer_table(), name, &OptimizerRow::name);
   if (row == optimizer_table().end()) {
-    throw Error(ErrorKind::usage, describe_unknown("optimizer", name, optimizer_names()));
+    throw Error(ErrorKind::usage, describe_unknown("optimizer", name, optimizer_names(),
+                                                   "armwright list optimizers"));
   }
   return *row;
 }
@@ -110,6 +111,9 @@ OptimizerRow load_optimizer(std::string_view name) {
   }
   if (is_host_name(name)) {
     throw Error(ErrorKind::usage, explain_host_optimizer(name));
+  }
+  if (!suggest_exec(name).empty()) {
+    throw Error(ErrorKind::usage, describe_missing_exec("optimizer", name, "--optimizer "));
   }
   if (is_library_name(name)) {
     return load_library_plugin(name);

@@ -183,7 +183,8 @@ const AnalyticFunction& find_analytic(std::string_view name) {
       return function;
     }
   }
-  throw Error(ErrorKind::usage, describe_unknown("analytic function", name, analytic_names()));
+  throw Error(ErrorKind::usage, describe_unknown("analytic function", name, analytic_names(),
+                                                 "armwright list settings function.name"));
 }
 
 std::size_t count_integers(const AnalyticFunction& function, std::size_t dimension) {

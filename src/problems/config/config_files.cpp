@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/folder.hpp"
 #include "base/text.hpp"
+#include "process/command_words.hpp"
 #include "process/own_file.hpp"
 
 namespace armwright {
@@ -102,6 +103,9 @@ std::filesystem::path find_config_folder() {
 
 std::filesystem::path resolve_config(std::string_view kind, std::string_view name_or_path,
                                      const std::filesystem::path& beside) {
+  if (kind == "problems" && !suggest_exec(name_or_path).empty()) {
+    throw Error(ErrorKind::usage, describe_missing_exec("problem", name_or_path, ""));
+  }
   const std::string extension = get_extension(kind);
   const std::filesystem::path path(name_or_path);
   const bool has_folder = name_or_path.find('/') != std::string_view::npos;
@@ -123,9 +127,13 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
   }
   const auto names = list_configs(kind);
   if (std::find(names.begin(), names.end(), name_or_path) == names.end()) {
-    throw Error(ErrorKind::usage, describe_unknown(get_singular(kind), name_or_path, names) +
-                                      fmt::format(" (or the path of a {} file)",
-                                                  kind == "robots" ? ".urdf or .xml" : extension));
+    const bool is_listed =
+        kind == "problems" || kind == "designs" || kind == "robots" || kind == "studies";
+    throw Error(ErrorKind::usage,
+                describe_unknown(get_singular(kind), name_or_path, names,
+                                 is_listed ? fmt::format("armwright list {}", kind) : "") +
+                    fmt::format(" (or the path of a {} file)",
+                                kind == "robots" ? ".urdf or .xml" : extension));
   }
   return find_folder(kind) / (std::string(name_or_path) + extension);
 }

@@ -180,7 +180,8 @@ const SettingTable& design_settings() {
   static const SettingTable settings{
       .key = "",
       .settings = {&kDesignName, &kDesignTitle, &kDesignSource, &kDesignController, &kDesignSpeed},
-      .tables = {&get_drive_settings(), &kPublishedSettings}};
+      .tables = {&get_drive_settings(), &kPublishedSettings},
+      .listed_as = "design:"};
   return settings;
 }
 

@@ -158,6 +158,7 @@ class PlantSettings {
       links_.tables.push_back(&table);
     }
     file_.tables = {&joints_, &links_, &kPayloadSettings, &kFittedSettings};
+    file_.listed_as = "plant:";
   }
   PlantSettings(const PlantSettings&) = delete;  // tables point into each other
 

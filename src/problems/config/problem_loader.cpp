@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
 #include "base/error.hpp"
 #include "base/file.hpp"
 #include "base/hash.hpp"
@@ -56,9 +59,7 @@ const SettingTable kSetsSettings{.key = "sets",
                                  .settings = {&kSetsTraining, &kSetsValidation, &kSetsTest,
                                               &kSetsValidationCases, &kSetsTestCases}};
 
-const Setting<std::string> kRunOptimizer{
-    "optimizer", "ga",
-    "optimizer of armwright optimize (for the kinds program, command and external: auto)"};
+const Setting<std::string> kRunOptimizer{"optimizer", "auto", "optimizer of armwright optimize"};
 const Setting<std::int64_t> kRunBudget{"budget",
                                        {.lower = 0, .upper = 1e12},
                                        10000,
@@ -81,8 +82,13 @@ const Setting<double> kWinnerTorque{"total_torque_n_m", kAboveZero, kNoDefault,
 const Setting<std::string> kWinnerDesign{"design", kNoDefault, "design file of that winner"};
 const Setting<std::string> kWinnerWhere{"where", "",
                                         "table or page of the source with these numbers"};
+const Setting<std::vector<std::string>> kWinnerSet{
+    "set", std::vector<std::string>{},
+    "settings, each KEY=VALUE, with which these numbers were found; results with other values of "
+    "them are not shown beside these numbers"};
 const SettingTable kWinnerSettings{
-    .key = "published", .settings = {&kWinnerError, &kWinnerTorque, &kWinnerDesign, &kWinnerWhere}};
+    .key = "published",
+    .settings = {&kWinnerError, &kWinnerTorque, &kWinnerDesign, &kWinnerWhere, &kWinnerSet}};
 
 const Setting<std::string> kFunctionName{"name", analytic_names, kNoDefault,
                                          "for the kind analytic: the function"};
@@ -149,7 +155,37 @@ PublishedWinner read_published_winner(const ConfigTable& table) {
     published.design = read_design_name(table, kWinnerDesign);
   }
   published.where = table.get(kWinnerWhere);
+  published.set = table.get(kWinnerSet);
   return published;
+}
+
+// Takes the numbers away from a published winner that was found with other settings than those of
+// `resolved_json`, and says which setting differs.
+void compare_settings(const std::string& resolved_json, PublishedWinner& published) {
+  if (!published.error_m && !published.total_torque_n_m) {
+    return;
+  }
+  const nlohmann::json resolved = nlohmann::json::parse(resolved_json);
+  for (const std::string& setting : published.set) {
+    const std::size_t equals = setting.find('=');
+    const std::string key = setting.substr(0, equals);
+    const std::string theirs = setting.substr(std::min(equals, setting.size() - 1) + 1);
+    std::string path = "/" + key;
+    std::ranges::replace(path, '.', '/');
+    const nlohmann::json::json_pointer pointer(path);
+    const nlohmann::json ours =
+        resolved.contains(pointer) ? resolved.at(pointer) : nlohmann::json(nullptr);
+    const nlohmann::json wanted = nlohmann::json::parse(theirs, nullptr, false);
+    if (ours == (wanted.is_discarded() ? nlohmann::json(theirs) : wanted)) {
+      continue;
+    }
+    published.difference =
+        fmt::format("{} is {} here, and {} for the published winner", key,
+                    ours.is_string() ? ours.get<std::string>() : ours.dump(), theirs);
+    published.error_m.reset();
+    published.total_torque_n_m.reset();
+    return;
+  }
 }
 
 SweepPlan read_sweep(const ConfigTable& table, const TrackingProblem& problem) {
@@ -288,7 +324,8 @@ const SettingTable& problem_settings() {
                  &kUserVariableSettings, &kUserObjectiveSettings, &kUserConstraintSettings,
                  &kUserMetricSettings,   &kUserCasesSettings,     &kIdentificationSettings,
                  &kExcitationSettings,   &kMotionSettings,        &kObstacleSettings,
-                 &kTubeSettings}};
+                 &kTubeSettings},
+      .listed_as = ""};
   return settings;
 }
 
@@ -349,8 +386,7 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
   loaded.racing = read_racing_table(table.get_table_or_empty(kRacingSettings));
   loaded.sets = read_sets(table.get_table_or_empty(kSetsSettings), usual);
   const ConfigTable run = table.get_table_or_empty(kRunSettings);
-  const bool is_users = kind == "program" || kind == "command" || kind == "external";
-  loaded.optimizer = run.get_or(kRunOptimizer, is_users ? "auto" : *kRunOptimizer.fallback);
+  loaded.optimizer = run.get(kRunOptimizer);
   loaded.budget = run.get(kRunBudget);
   loaded.published = read_published_winner(table.get_table_or_empty(kWinnerSettings));
   if (kind == "analytic") {
@@ -384,6 +420,7 @@ LoadedProblem read_problem(const ConfigTable& table, const std::filesystem::path
   }
   table.refuse_unknown();
   loaded.resolved_json = table.to_json();
+  compare_settings(loaded.resolved_json, loaded.published);
   return loaded;
 }
 

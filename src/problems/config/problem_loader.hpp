@@ -35,12 +35,15 @@ struct CaseSets {
   std::int64_t training_cases = 0;
 };
 
-// The result that the source of a problem reports for its winner.
+// The result that the source of a problem reports for its winner. The numbers are left out if the
+// problem has another value of a setting of `set`.
 struct PublishedWinner {
   std::optional<double> error_m;
   std::optional<double> total_torque_n_m;
   std::string design;
   std::string where;
+  std::vector<std::string> set = {};  // KEY=VALUE texts
+  std::string difference = {};        // why the numbers are left out; empty if they are not
 };
 
 // A sweep: one design is evaluated at several values of one setting, without optimization.

@@ -55,6 +55,9 @@ void add_old_values(nlohmann::json& resolved) {
   if (resolved.contains("robot") && !resolved["task"].contains("solver")) {
     resolved["task"]["solver"] = "scalar";
   }
+  if (resolved.contains("robot") && !resolved["training"].contains("failure_rule")) {
+    resolved["training"]["failure_rule"] = "thesis";
+  }
   if (resolved.contains("robot") && resolved["robot"].value("propose", false) &&
       !resolved["control"].contains("period_s")) {
     resolved["control"]["period_s"] = *kControlPeriod.fallback;

@@ -96,7 +96,12 @@ const Setting<double> kTrainingCutoff{
     "cutoff_error_m",
     {.lower = kFailureError_m, .upper = 1e6},
     TrackingConfig{}.cutoff_error_m,
-    "a training case ends at this error, and each of its remaining points counts as this error"};
+    "a training case ends at this error (m); training.failure_rule says what it then counts"};
+const Setting<std::string> kTrainingFailureRule{
+    "failure_rule", failure_rule_names, "ordered",
+    "what a training case counts in which the arm loses its target; ordered: more than any case "
+    "in which it does not, the more the earlier it ended, and with the largest torque and energy; "
+    "thesis: its remaining points count as cutoff_error_m, and torque and energy as they are"};
 
 const Setting<double> kMotorsTorquePerMass{
     "torque_per_mass_n_m_per_kg",
@@ -373,7 +378,8 @@ const SettingTable kRobotSettings{
                  &kRobotMassFromShapes, &kRobotPackages, &kRobotMassScale, &kRobotDynamics,
                  &kRobotPlant, &kRobotFrictionScale, &kRobotArmatureScale, &kRobotStiffnessScale,
                  &kRobotArmatureShare, &kRobotElastic, &kRobotPropose}};
-const SettingTable kTrainingSettings{.key = "training", .settings = {&kTrainingCutoff}};
+const SettingTable kTrainingSettings{.key = "training",
+                                     .settings = {&kTrainingCutoff, &kTrainingFailureRule}};
 const SettingTable kMotorSettings{.key = "motors", .settings = {&kMotorsTorquePerMass}};
 
 void name_robot_file(const std::filesystem::path& urdf, const std::function<void()>& call) {
@@ -447,7 +453,10 @@ void load_tracking(const ConfigTable& table, std::span<const EngineRow> engines,
   read_drives(control, config.task);  // they need the final control period
   check_length(task, control, config);
   config.objective = read_objective(table.get_table_or_empty(kObjectiveSettings));
-  config.cutoff_error_m = table.get_table_or_empty(kTrainingSettings).get(kTrainingCutoff);
+  const ConfigTable training = table.get_table_or_empty(kTrainingSettings);
+  config.cutoff_error_m = training.get(kTrainingCutoff);
+  config.failure_rule = static_cast<FailureRule>(training.get_choice(kTrainingFailureRule));
+  training.settle(kTrainingFailureRule, training.get(kTrainingFailureRule));
 
   const ConfigTable variables = table.get_table(kVariableSettings);
   read_variables(variables, control, urdf, config, loaded);

@@ -51,6 +51,10 @@ struct DecisionVariable {
   // The words of a category. Its number in a decision vector is the place of the word, from 0, so
   // its bounds are 0 and choices.size() - 1.
   std::vector<std::string> choices = {};
+  // What moves a bound outwards, for messages: "--set variables.bounds_factor=1000 (it is 100)".
+  // Empty if nothing does.
+  std::string lower_widening = {};
+  std::string upper_widening = {};
 };
 
 // The name and the unit of a number.

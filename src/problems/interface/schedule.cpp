@@ -46,7 +46,7 @@ const char* find_name(const Rows& rows, Kind kind) {
 }
 
 std::optional<int> read_count(std::string_view text, std::int64_t least, std::int64_t most) {
-  const auto count = parse_integer(text);
+  const auto count = parse_count(text);
   return count && *count >= least && *count <= most ? std::optional(static_cast<int>(*count))
                                                     : std::nullopt;
 }

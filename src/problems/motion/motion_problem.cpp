@@ -150,11 +150,14 @@ void MotionProblem::make_variables(const Eigen::MatrixXd& start) {
   const std::size_t intervals = count_intervals();
   for (std::size_t joint = 0; is_line() && joint < robot_->joint_count(); ++joint) {
     const VariableBounds& bounds = config_.effort_share;
-    variables.push_back({.name = robot_->joints[joint].name + ".effort_share",
-                         .unit = "1",
-                         .lower = bounds.lower,
-                         .upper = bounds.upper,
-                         .start = bounds.upper});
+    variables.push_back(
+        {.name = robot_->joints[joint].name + ".effort_share",
+         .unit = "1",
+         .lower = bounds.lower,
+         .upper = bounds.upper,
+         .start = bounds.upper,
+         .lower_widening = "the key motion.effort_share_bounds",
+         .upper_widening = bounds.upper < 1 ? "the key motion.effort_share_bounds" : ""});
   }
   for (std::size_t i = 0; config_.intervals_s.empty() && i < intervals; ++i) {
     // The points between which the interval lies; with virtual knots, two intervals share a way.
@@ -181,7 +184,9 @@ void MotionProblem::make_variables(const Eigen::MatrixXd& start) {
          .lower = bounds.lower,
          .upper = bounds.upper,
          .start = std::clamp(kStartSlowness * time_s / share, bounds.lower, bounds.upper),
-         .scale = Scale::logarithmic});
+         .scale = Scale::logarithmic,
+         .lower_widening = "the key motion.shortest_interval_s",
+         .upper_widening = "the key motion.longest_interval_s"});
   }
   for (std::size_t point = 0; point < config_.points.size(); ++point) {
     if (config_.points[point].q || config_.points[point].tool) {
@@ -210,7 +215,9 @@ void MotionProblem::make_variables(const Eigen::MatrixXd& start) {
                              .unit = "m",
                              .lower = bounds->lower,
                              .upper = bounds->upper,
-                             .start = std::clamp(value, bounds->lower, bounds->upper)});
+                             .start = std::clamp(value, bounds->lower, bounds->upper),
+                             .lower_widening = fmt::format("the key tubes.{}_bounds_m", what),
+                             .upper_widening = fmt::format("the key tubes.{}_bounds_m", what)});
       }
     };
     add("length", tubes.length_m, get_link_length_m(*robot_, link));

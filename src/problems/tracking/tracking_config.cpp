@@ -9,6 +9,11 @@
 
 namespace armwright {
 
+const std::vector<std::string>& failure_rule_names() {
+  static const std::vector<std::string> names = {"ordered", "thesis"};
+  return names;
+}
+
 double& get_parameter(ArmDesign& design, const DesignParameter& parameter) {
   JointDrive& joint = design.joints[parameter.joint];
   switch (parameter.kind) {
@@ -113,6 +118,25 @@ double calc_case_duration_s(const TrackingConfig& config, const TrackingTask& ta
 
 namespace {
 
+// Returns how the user moves the bounds of a parameter that spans a factor around its start.
+std::string describe_widening(const DesignParameter& parameter, double factor) {
+  constexpr double kMore = 10, kMoreOfSize = 2;  // sizes and the speed span less than gains
+  const auto describe = [factor](std::string_view key, double more) {
+    return fmt::format("--set variables.{}={} (it is {})", key, format_exact(more * factor),
+                       format_exact(factor));
+  };
+  switch (parameter.kind) {
+    case DesignParameter::Kind::length_scale:
+      return describe("length_bounds_factor", kMoreOfSize);
+    case DesignParameter::Kind::section_scale:
+      return describe("section_bounds_factor", kMoreOfSize);
+    case DesignParameter::Kind::speed:
+      return describe("speed_bounds_factor", kMoreOfSize);
+    default:
+      return describe("bounds_factor", kMore);
+  }
+}
+
 DecisionVariable make_variable(const TrackingConfig& config, const DesignParameter& parameter) {
   const std::string& joint = config.robot.joints[parameter.joint].name;
   const JointKind kind = config.robot.joints[parameter.joint].kind;
@@ -158,6 +182,8 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
       variable.unit = "m";
       variable.lower = bounds.lower;
       variable.upper = bounds.upper;
+      variable.lower_widening = variable.upper_widening =
+          fmt::format("the key tubes.{}", is_wall ? "wall_bounds_m" : "diameter_bounds_m");
       if (variable.start < bounds.lower || variable.start > bounds.upper) {
         throw Error(ErrorKind::usage,
                     fmt::format("{} starts at {:g} m, outside of tubes.{}, {:g} to {:g} m; give it "
@@ -186,6 +212,7 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
   const auto [lower, upper] = std::minmax({variable.start / factor, variable.start * factor});
   variable.lower = lower;
   variable.upper = upper;
+  variable.lower_widening = variable.upper_widening = describe_widening(parameter, factor);
   if (config.within_effort_limits && is_effort(parameter)) {
     const double limit = config.robot.joints[parameter.joint].effort_limit;
     if (std::abs(variable.start) > limit) {
@@ -195,8 +222,17 @@ DecisionVariable make_variable(const TrackingConfig& config, const DesignParamet
                               "variables.within_effort_limits to false",
                               variable.name, variable.start, limit));
     }
-    variable.lower = std::max(variable.lower, -limit);
-    variable.upper = std::min(variable.upper, limit);
+    constexpr const char* kOfRobot =
+        "--set variables.within_effort_limits=false, beyond the "
+        "effort limit of the robot's file";
+    if (variable.lower < -limit) {
+      variable.lower = -limit;
+      variable.lower_widening = kOfRobot;
+    }
+    if (variable.upper > limit) {
+      variable.upper = limit;
+      variable.upper_widening = kOfRobot;
+    }
   }
   if (!std::isnormal(lower) || !std::isnormal(upper)) {
     throw Error(ErrorKind::usage,

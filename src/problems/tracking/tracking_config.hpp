@@ -2,6 +2,7 @@
 // variables with their bounds, and the names and units of objectives, constraints and metrics.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -55,6 +56,20 @@ inline constexpr const char* kProposedStart = "proposed";
 // The name that commands use for a problem's start, whatever it was made from.
 inline constexpr const char* kStartDesign = "start";
 
+// What a training case counts in which the arm loses its target.
+//   ordered  Worse than any case in which the arm follows its target, and the worse the earlier the
+//            simulation ended: if it ended after the share s of the case's time, every point counts as
+//            cutoff_error_m (2 - s). A case that ran to its end with an error above kFailureError_m
+//            keeps its error. If a case of a design fails, the objective counts the largest torque,
+//            energy, duration, mass and deflection that the bounds allow, so no saving makes up for
+//            failing.
+//   thesis   As in the thesis (section 5.2.3): the points from the end of the simulation on count as
+//            cutoff_error_m, and all other terms count as they are. All fallen arms look alike then,
+//            and the one with the weakest motors is the best of them.
+enum class FailureRule : std::uint8_t { ordered, thesis };
+// Returns the names in the order of the enum.
+const std::vector<std::string>& failure_rule_names();
+
 struct TrackingConfig {
   std::string name;
   std::string summary;
@@ -68,6 +83,7 @@ struct TrackingConfig {
   std::optional<TestCase> path;  // replaces the cases that are generated in the workspace
   EnginePair engines;            // both must be set
   double cutoff_error_m = 1.0;   // training only
+  FailureRule failure_rule = FailureRule::ordered;
   TrackingObjective objective;
   Perturbation perturbation;
   ArmDesign start;

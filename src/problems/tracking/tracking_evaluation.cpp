@@ -28,6 +28,7 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   std::vector<double> rms_effort_sums(joints);
   double failures = 0;
   double lost = 0;  // failures, and cases with a small error that diverged on their last points
+  bool counts_worst = false;
   std::vector<double> errors_m;
   for (const CaseOutcome& outcome : outcomes) {
     if (!add_outcome(outcome, evaluation)) {
@@ -39,6 +40,7 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
     const bool failed = outcome.error > kFailureError_m;
     failures += failed ? 1 : 0;
     lost += failed || outcome.status == EvaluationStatus::diverged ? 1 : 0;
+    counts_worst = counts_worst || outcome.metrics[case_metrics::kFailed] > 0;
     duration_sum_s += outcome.metrics[case_metrics::kDuration];
     energy_sum_j += outcome.metrics[case_metrics::kEnergy];
     saturation_sum += outcome.metrics[case_metrics::kSaturatedShare];
@@ -71,10 +73,16 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   }
   terms.required = calc_worst_required(outcomes, case_metrics::first_requirement(joints),
                                        config_.requirements.size());
-  evaluation.objectives = calc_objectives(objective, terms);
-  evaluation.constraint_values = calc_constraints(objective, terms);
+  ObjectiveTerms counted = terms;
+  if (counts_worst) {
+    counted = make_worst_terms();
+    counted.error_m = terms.error_m;
+    counted.required = terms.required;
+  }
+  evaluation.objectives = calc_objectives(objective, counted);
+  evaluation.constraint_values = calc_constraints(objective, counted);
   if (const auto& limit_m = config_.tubes.deflection_limit_m) {
-    evaluation.constraint_values.push_back(terms.deflection_m / *limit_m - 1);
+    evaluation.constraint_values.push_back(counted.deflection_m / *limit_m - 1);
   }
   append_constraints(config_.requirements, terms.required, evaluation.constraint_values);
   // A case with an error has residuals if they were asked for and the case was not abandoned.
@@ -83,9 +91,18 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
         return !outcome.has_error || !outcome.residuals.empty();
       });
   if (has_residuals) {
-    evaluation.residuals = calc_residuals(objective, design, terms, outcomes, numbers);
+    evaluation.residuals = calc_residuals(
+        objective, counts_worst ? make_strongest_design() : design, counted, outcomes, numbers);
     evaluation.jacobian =
         calc_jacobian(objective, design, directions_, outcomes, evaluation.residuals);
+    if (counts_worst && !evaluation.jacobian.empty()) {  // the largest torque does not change
+      std::size_t points = 0;
+      for (const CaseOutcome& outcome : outcomes) {
+        points += outcome.residuals.size();
+      }
+      const auto first = static_cast<std::ptrdiff_t>(points * directions_.size());
+      std::fill(evaluation.jacobian.begin() + first, evaluation.jacobian.end(), 0.0);
+    }
   }
   evaluation.metrics = {mean_error, terms.torque_n_m, failures, terms.energy_j,
                         saturation_sum / numbers};
@@ -158,34 +175,28 @@ std::optional<double> TrackingProblem::calc_lower_bound(std::span<const double> 
                                        : evaluation.objectives.front();
 }
 
-std::vector<double> TrackingProblem::penalty_objectives() const {
-  // The error is ten times that of a design that is cut off at the first point of every case. The
-  // torque is the most that the bounds allow, or ten times that if only torque is minimised. The
-  // energy is that of this torque over one turn of every joint per move. The mass is that of the
-  // largest arm, the deflection is the arm's length, and a requirement counts more than the worst
-  // training case.
-  const TrackingObjective& objective = config_.objective;
+ArmDesign TrackingProblem::make_strongest_design() const {
   ArmDesign strongest = config_.start;
   for (const DesignParameter& parameter : config_.parameters) {
     if (is_effort(parameter)) {
       get_parameter(strongest, parameter) *= config_.bounds_factor;
     }
   }
+  return strongest;
+}
+
+ObjectiveTerms TrackingProblem::make_worst_terms() const {
+  // The energy is that of the largest torque over one turn of every joint per move. The mass is that
+  // of the largest arm, and the deflection is the arm's length.
   TrackingTask slowest = make_task(config_.start);
   if (changes_speed(config_)) {
     slowest.speed_m_per_s /= config_.speed_bounds_factor;
   }
-  const double torque_n_m = calc_total_effort(strongest);
-  const bool is_torque = objective.kind == TrackingObjective::Kind::torque_with_error_limit;
   ObjectiveTerms terms;
-  terms.error_m = 10 * config_.cutoff_error_m;
-  if (objective.statistic == TrackingObjective::Statistic::mean_with_failures) {
-    terms.error_m += 10 * objective.failure_penalty_m;
-  }
-  terms.torque_n_m = (is_torque ? 10 : 1) * torque_n_m;
-  terms.energy_j = torque_n_m * 2 * std::numbers::pi * config_.workspace.points;
+  terms.torque_n_m = calc_total_effort(make_strongest_design());
+  terms.energy_j = terms.torque_n_m * 2 * std::numbers::pi * config_.workspace.points;
   terms.duration_s = calc_case_duration_s(config_, slowest);
-  terms.peak_torque_n_m = terms.rms_torque_n_m = torque_n_m;
+  terms.peak_torque_n_m = terms.rms_torque_n_m = terms.torque_n_m;
   if (has_mass_metric(config_)) {
     ArmDesign largest = config_.start;
     for (std::size_t i = 0; i < config_.parameters.size(); ++i) {
@@ -197,6 +208,22 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
   }
   for (std::size_t link = 0; link < config_.tubes.tubes.size(); ++link) {
     terms.deflection_m += get_link_length_m(config_.robot, link);
+  }
+  return terms;
+}
+
+std::vector<double> TrackingProblem::penalty_objectives() const {
+  // The error is ten times that of a design that is cut off at the first point of every case. The
+  // torque is ten times the largest if only torque is minimised. A requirement counts more than the
+  // worst training case.
+  const TrackingObjective& objective = config_.objective;
+  ObjectiveTerms terms = make_worst_terms();
+  terms.error_m = 10 * config_.cutoff_error_m;
+  if (objective.statistic == TrackingObjective::Statistic::mean_with_failures) {
+    terms.error_m += 10 * objective.failure_penalty_m;
+  }
+  if (objective.kind == TrackingObjective::Kind::torque_with_error_limit) {
+    terms.torque_n_m *= 10;
   }
   for (const Requirement& requirement : config_.requirements) {
     terms.required.push_back(2 * kWorstRatio * requirement.limit);

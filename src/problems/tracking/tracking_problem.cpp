@@ -16,11 +16,17 @@
 namespace armwright {
 namespace {
 
+// Returns whether the simulation of a training case ended because the arm lost its target.
+bool has_ended_early(SimulationStatus status) {
+  return status != SimulationStatus::ok && status != SimulationStatus::abandoned;
+}
+
 // Returns the outcome of a simulated job, without the requirements' metrics. Its residuals are the
 // errors (m) of the counted points; aggregate() scales them. `own_targets` says that the targets of
 // the job are those of its design, not the nominal ones.
-CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRole role,
+CaseOutcome make_outcome(TrackingResult result, const TrackingConfig& config, CaseRole role,
                          const TrackingJob& job, bool own_targets, bool residuals) {
+  const TrackingTask& task = config.task;
   const TargetTable& targets = *job.targets;
   CaseOutcome outcome;
   outcome.reason = std::move(result.reason);
@@ -52,6 +58,12 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
       result.saturated_share.assign(targets.joints, 0);
       break;
   }
+  const bool is_ordered = role == CaseRole::training && config.failure_rule == FailureRule::ordered;
+  if (is_ordered && has_ended_early(result.status)) {
+    const double share = static_cast<double>(result.steps) / std::max(1, targets.steps);
+    result.mean_error_m = job.cutoff_m * (2 - share);
+    std::ranges::fill(result.point_error_m, result.mean_error_m);
+  }
   outcome.error = outcome.has_error ? result.mean_error_m : 0;
   if (residuals && outcome.has_error) {
     outcome.residuals.assign(result.point_error_m.begin() + (task.count_first_point ? 0 : 1),
@@ -66,6 +78,7 @@ CaseOutcome make_outcome(TrackingResult result, const TrackingTask& task, CaseRo
   outcome.metrics[case_metrics::kEnergy] = result.energy_j;
   outcome.metrics[case_metrics::kSaturatedShare] = saturation;
   outcome.metrics[case_metrics::kDuration] = targets.steps * task.control_period_s;
+  outcome.metrics[case_metrics::kFailed] = is_ordered && outcome.error > kFailureError_m ? 1 : 0;
   for (std::size_t i = 0; i < joints; ++i) {
     outcome.metrics[case_metrics::peak_effort(i)] = result.peak_effort[i];
     outcome.metrics[case_metrics::rms_effort(i)] = result.rms_effort[i];
@@ -317,7 +330,8 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
     const CaseRole role = jobs[i].block->role;
     const std::vector<double> required = make_required_metrics(
         config_.requirements, results[i], *tracking[i].targets, role == CaseRole::training);
-    outcomes.push_back(make_outcome(std::move(results[i].result), config_.task, role, tracking[i],
+    const bool ended_early = has_ended_early(results[i].result.status);
+    outcomes.push_back(make_outcome(std::move(results[i].result), config_, role, tracking[i],
                                     own_targets, jobs[i].residuals));
     if (outcomes[i].has_error) {
       outcomes[i].metrics.insert(outcomes[i].metrics.end(), required.begin(), required.end());
@@ -325,9 +339,13 @@ std::vector<CaseOutcome> TrackingProblem::simulate(std::span<const CaseJob> jobs
     const PhysicsEngine& engine = config_.engines.get(role);
     if (jobs[i].jacobian && engine.has_derivatives() && tracking[i].variation == nullptr &&
         !outcomes[i].residuals.empty()) {
+      const std::size_t counted = outcomes[i].residuals.size() * directions_.size();
+      if (config_.failure_rule == FailureRule::ordered && ended_early) {
+        outcomes[i].jacobian.assign(counted, 0.0);  // the share of the time moves in steps
+        continue;
+      }
       outcomes[i].jacobian = engine.calc_derivatives(
           inputs_.setup(), tracking[i], inputs_.perturb_directions(*case_of_job[i], directions_));
-      const std::size_t counted = outcomes[i].residuals.size() * directions_.size();
       outcomes[i].jacobian.erase(outcomes[i].jacobian.begin(),
                                  outcomes[i].jacobian.end() - static_cast<std::ptrdiff_t>(counted));
     }

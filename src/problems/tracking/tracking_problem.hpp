@@ -31,7 +31,8 @@ namespace case_metrics {
 inline constexpr std::size_t kEnergy = 0;          // J
 inline constexpr std::size_t kSaturatedShare = 1;  // the mean over the joints
 inline constexpr std::size_t kDuration = 2;        // s, of the whole case, even if it ended early
-inline constexpr std::size_t kFirstJoint = 3;
+inline constexpr std::size_t kFailed = 3;          // 1 if FailureRule::ordered counts a failure
+inline constexpr std::size_t kFirstJoint = 4;
 inline constexpr std::size_t kPerJoint = 2;
 constexpr std::size_t peak_effort(std::size_t joint) {  // N m, or N for a joint that slides
   return kFirstJoint + kPerJoint * joint;
@@ -125,6 +126,11 @@ class TrackingProblem final : public Problem {
                                             std::uint64_t first, std::size_t count,
                                             RecordingOptions recording,
                                             std::span<const Requirement> requirements) const;
+  // Returns the design with the largest effort limits that the bounds allow.
+  ArmDesign make_strongest_design() const;
+  // Returns the largest torque, energy, duration, mass and deflection that the bounds allow. The
+  // error is 0, and nothing is required.
+  ObjectiveTerms make_worst_terms() const;
   void check_links(const ArmDesign& design) const;
   void check_bounds() const;  // throws if a design within the bounds is no arm
   void describe_jacobian();

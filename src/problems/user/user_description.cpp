@@ -434,6 +434,10 @@ ProblemDescription make_description(const UserDescription& description) {
   made.name = description.name;
   made.summary = description.summary;
   made.variables = description.variables;
+  for (DecisionVariable& variable : made.variables) {
+    variable.lower_widening = "the variable's key 'lower' in the problem's description";
+    variable.upper_widening = "the variable's key 'upper' in the problem's description";
+  }
   made.metrics = description.metrics;
   bool has_weights = false;
   for (const UserObjective& objective : description.objectives) {

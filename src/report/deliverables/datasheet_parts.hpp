@@ -60,6 +60,7 @@ h1 { font-size: 14pt; margin: 0; overflow: hidden; text-overflow: ellipsis; whit
 h2 { font-size: 9pt; margin: 2.2mm 0 .6mm; border-bottom: .3mm solid #111; }
 p { margin: .5mm 0; }
 .lead, .clamped { display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 2; overflow: hidden; }
+.fault { border: .5mm solid #a00; padding: .8mm 1.5mm; font-weight: bold; color: #a00; }
 .columns { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0 5mm; }
 .figures { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 0 5mm; }
 dl { display: grid; grid-template-columns: max-content minmax(0, 1fr); gap: 0 2mm; margin: 0; }

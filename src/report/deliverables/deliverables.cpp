@@ -57,6 +57,9 @@ std::vector<std::string> describe_origin(const FinishedArm& arm) {
                                           kMillimetresPerMetre * *test.mean)
                             : "no mean",
                   test.failures)};
+  for (const std::string& fault : list_faults(arm.result())) {
+    lines.push_back("Do not use this design: " + fault + ".");
+  }
   if (arm.starts_held()) {
     lines.emplace_back(
         "The simulated controllers started with integrals that hold the arm against gravity. One "
@@ -154,7 +157,7 @@ bool FinishedArm::starts_held() const {
   return all;
 }
 
-FinishedArm load_finished_arm(const fs::path& folder, std::string_view format) {
+FinishedArm load_finished_arm(const fs::path& folder, std::string_view format, bool force) {
   refuse_study(folder, format);
   const RunResult result = load_result(folder);
   if (!result.tracking) {
@@ -167,6 +170,11 @@ FinishedArm load_finished_arm(const fs::path& folder, std::string_view format) {
                                    "so there is nothing to make {} of; optimize again with a "
                                    "larger budget or another start",
                                    format));
+  }
+  if (const auto faults = list_faults(result); !faults.empty() && !force) {
+    refuse_run(folder, fmt::format("{}. A robot should not get this design: optimize again with a "
+                                   "larger budget or another optimizer. --force writes {} anyway",
+                                   join(faults, "; "), format));
   }
   FinishedArm arm;
   arm.run = read_recorded_run(folder);

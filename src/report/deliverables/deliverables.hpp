@@ -26,9 +26,11 @@ struct FinishedArm {
 };
 
 // Throws Error{usage} for a study, for a run of an analytic function, and for a run that has not
-// ended or has no winner; the message says which folder `format` (of --format) needs. Throws
+// ended or has no winner; the message says which folder `format` (of --format) needs. Also throws
+// Error{usage} if the winner has faults (list_faults()), unless `force`. Throws
 // Error{bad_data} if files have changed, so that the robot of the run is not known.
-FinishedArm load_finished_arm(const std::filesystem::path& folder, std::string_view format);
+FinishedArm load_finished_arm(const std::filesystem::path& folder, std::string_view format,
+                              bool force);
 
 // Each of the writers throws Error{io} if a file cannot be written.
 

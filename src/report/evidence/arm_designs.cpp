@@ -20,31 +20,27 @@ std::string find_design_argument(const RecordedRun& run, const std::string& name
 }
 
 // Returns whether published numbers apply to the run's problem. They hold for the problem as it is
-// shipped. Another engine computes the same problem; every other setting makes another problem.
+// shipped, with the settings that belong to them. Another engine computes the same problem; every
+// other setting makes another problem.
 bool is_as_published(const RecordedRun& run) {
   for (std::size_t i = 3; i < run.problem_arguments.size(); i += 2) {
     const std::string& setting = run.problem_arguments[i];
     const bool chooses_engine = std::ranges::any_of(
         std::initializer_list<const char*>{"engine", "judging_engine", "precision", "simd"},
         [&](const char* key) { return setting.starts_with(fmt::format("physics.{}=", key)); });
-    if (!chooses_engine) {
+    if (!chooses_engine && std::ranges::count(run.problem->published.set, setting) == 0) {
       return false;
     }
   }
   return true;
 }
 
-void add_published(const RecordedRun& run, const DesignFile& file, ShownDesign& design) {
-  if (!is_as_published(run)) {
-    return;
-  }
-  for (const PublishedResult& result : file.published) {
-    if (result.problem == run.problem_name && result.overrides.empty()) {
-      design.published_mean_m = result.error_m;
-      design.published_torque_n_m = result.total_torque_n_m;
-      design.where = result.where;
-      return;
-    }
+void add_published(const RecordedRun& run, const std::string& name, ShownDesign& design) {
+  const PublishedWinner& published = run.problem->published;
+  if (name == published.design && is_as_published(run)) {
+    design.published_mean_m = published.error_m;
+    design.published_torque_n_m = published.total_torque_n_m;
+    design.where = published.where;
   }
 }
 
@@ -63,7 +59,7 @@ std::optional<ShownDesign> load_shown(const RecordedRun& run, const std::string&
     run.tracking()->check_design(file.design);
     design.named = {id, name_design(id), file.design};
     design.source = file.source;
-    add_published(run, file, design);
+    add_published(run, name, design);
     return design;
   } catch (const Error& error) {
     notes.push_back(fmt::format("The design {} cannot be shown beside the others: {}.",

@@ -42,7 +42,7 @@ nlohmann::json make_arm_evidence(const RecordedRun& run, const std::vector<Shown
                                  PageSimulator* simulator, std::vector<std::string>& notes);
 
 // Returns Health of web/src/data.ts: the winner's results on the whole test set, which it must have,
-// and its motion on the median case by error, which is simulated here. Throws WorkStopped.
+// its motion on the median case by error, which is simulated here, and the recorded check. Throws WorkStopped.
 nlohmann::json make_health(const RecordedRun& run, const ShownDesign& winner,
                            PageSimulator& simulator);
 inline constexpr std::uint64_t kHealthCases = 1;  // that make_health() simulates

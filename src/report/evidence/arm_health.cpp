@@ -9,6 +9,7 @@
 #include "report/evidence/page_json.hpp"
 #include "sim/tracking/response.hpp"
 #include "study/statistics/summary.hpp"
+#include "study/verification/winner_check.hpp"
 
 namespace armwright {
 namespace {
@@ -93,19 +94,9 @@ json make_moves(const TrackingTask& task, const TargetTable& targets,
 
 // Returns the variables near a bound, the nearest one first; if there are none, the nearest one.
 json make_bounds(const ProblemDescription& description, const std::vector<double>& x) {
-  struct Place {
-    std::size_t variable = 0;
-    BoundDistance to;
-  };
-  std::vector<Place> places;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (const auto distance = calc_bound_distance(description.variables[i], x[i])) {
-      places.push_back({i, *distance});
-    }
-  }
-  std::ranges::stable_sort(places, {}, [](const Place& place) { return place.to.distance; });
+  const std::vector<VariablePlace> places = list_bound_places(description.variables, x);
   const auto near = static_cast<std::size_t>(std::ranges::count_if(
-      places, [](const Place& place) { return place.to.distance <= kNearBound; }));
+      places, [](const VariablePlace& place) { return place.to.distance <= kNearBound; }));
   json list = json::array();
   for (std::size_t i = 0; i < std::min(places.size(), std::max<std::size_t>(near, 1)); ++i) {
     list.push_back({{"name", description.variables[places[i].variable].name},
@@ -115,6 +106,41 @@ json make_bounds(const ProblemDescription& description, const std::vector<double
   return {{"grade", to_string(near > 0 ? HealthGrade::watch : HealthGrade::good)},
           {"near", near},
           {"nearest", std::move(list)}};
+}
+
+// Returns the grade of a verdict; null if the setting was not simulated.
+json grade_verdict(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::holds:
+      return to_string(HealthGrade::good);
+    case Verdict::worse:
+      return to_string(HealthGrade::watch);
+    case Verdict::fails:
+      return to_string(HealthGrade::bad);
+    case Verdict::missing:
+      break;
+  }
+  return nullptr;
+}
+
+// Returns the recorded check of the winner; null if there is none.
+json make_check_json(const std::filesystem::path& folder) {
+  const auto check = load_check(folder);
+  if (!check) {
+    return nullptr;
+  }
+  json settings = json::array();
+  for (const CheckedSetting& checked : check->settings) {
+    settings.push_back({{"name", checked.name},
+                        {"grade", grade_verdict(checked.verdict)},
+                        {"outcome", describe_outcome(checked)},
+                        {"mean_m", finite_or_null(checked.summary.mean)},
+                        {"reason", checked.fault}});
+  }
+  return {{"cases", check->own.cases},
+          {"own_m", finite_or_null(check->own.mean)},
+          {"limit_m", check->limit_m},
+          {"settings", std::move(settings)}};
 }
 
 }  // namespace
@@ -148,6 +174,7 @@ json make_health(const RecordedRun& run, const ShownDesign& winner, PageSimulato
        make_joints(problem.config().robot, design, winner, motion, task.control_period_s)},
       {"moves", make_moves(task, targets, motion)},
       {"bounds", make_bounds(run.describe(), run.find_best())},
+      {"check", make_check_json(run.folder)},
   };
 }
 

@@ -125,4 +125,22 @@ std::optional<BoundDistance> calc_bound_distance(const DecisionVariable& variabl
   return BoundDistance{.distance = std::min(place, 1 - place), .is_upper = place > 0.5};
 }
 
+std::vector<VariablePlace> list_bound_places(std::span<const DecisionVariable> variables,
+                                             std::span<const double> x) {
+  std::vector<VariablePlace> places;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const DecisionVariable& variable = variables[i];
+    const bool has_two_values =
+        variable.type == VariableType::integer && variable.upper - variable.lower < 2;
+    if (variable.type == VariableType::category || has_two_values) {
+      continue;
+    }
+    if (const auto distance = calc_bound_distance(variable, x[i])) {
+      places.push_back({i, *distance});
+    }
+  }
+  std::ranges::stable_sort(places, {}, [](const VariablePlace& one) { return one.to.distance; });
+  return places;
+}
+
 }  // namespace armwright

@@ -74,4 +74,14 @@ struct BoundDistance {
 // Returns nothing if the bounds are equal.
 std::optional<BoundDistance> calc_bound_distance(const DecisionVariable& variable, double x);
 
+struct VariablePlace {
+  std::size_t variable = 0;  // index into ProblemDescription::variables
+  BoundDistance to;
+};
+// Returns the places of the variables of a decision vector, the nearest to a bound first. Leaves out
+// variables with equal bounds, categories, whose words have no order, and integers with two values,
+// which are always at a bound.
+std::vector<VariablePlace> list_bound_places(std::span<const DecisionVariable> variables,
+                                             std::span<const double> x);
+
 }  // namespace armwright

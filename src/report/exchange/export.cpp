@@ -23,9 +23,9 @@ void export_all(const std::filesystem::path& folder, const ExportFormat& format,
   put_in_place(target);
 }
 
-void export_arm(const std::filesystem::path& folder, const ExportFormat& format,
+void export_arm(const std::filesystem::path& folder, const ExportFormat& format, bool force,
                 ExportSummary& summary) {
-  const FinishedArm arm = load_finished_arm(folder, format.name);
+  const FinishedArm arm = load_finished_arm(folder, format.name, force);
   PartialFolder target(check_export_folder(summary.folder));
   format.write_arm(arm, target.path());
   put_in_place(target);
@@ -53,7 +53,7 @@ std::span<const ExportFormat> export_formats() {
 }
 
 ExportSummary export_runs(const std::filesystem::path& folder, std::string_view format,
-                          std::filesystem::path out) {
+                          std::filesystem::path out, bool force) {
   const auto formats = export_formats();
   const auto chosen = std::ranges::find(formats, format, &ExportFormat::name);
   if (chosen == formats.end()) {
@@ -63,7 +63,11 @@ ExportSummary export_runs(const std::filesystem::path& folder, std::string_view 
   }
   ExportSummary summary;
   summary.folder = out.empty() ? folder / ("export-" + chosen->name) : std::move(out);
-  (chosen->write_arm != nullptr ? export_arm : export_all)(folder, *chosen, summary);
+  if (chosen->write_arm != nullptr) {
+    export_arm(folder, *chosen, force, summary);
+  } else {
+    export_all(folder, *chosen, summary);
+  }
   return summary;
 }
 

@@ -38,8 +38,8 @@ struct ExportSummary {
 // Exports the runs in `folder` as `format` to the new folder `out`. An empty `out` stands for
 // folder/export-FORMAT. Throws Error{usage} for an unknown format and if anything but an empty
 // folder is at `out`; Error{io}; and what find_runs(), collect_runs(), load_finished_arm() and the
-// formats throw.
+// formats throw. `force` writes a winner with faults, too (list_faults() in study/run/run_result.hpp).
 ExportSummary export_runs(const std::filesystem::path& folder, std::string_view format,
-                          std::filesystem::path out);
+                          std::filesystem::path out, bool force);
 
 }  // namespace armwright

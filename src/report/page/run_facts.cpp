@@ -141,6 +141,7 @@ void add_result(const RecordedRun& run, Facts& facts) {
       facts.add("Error after start-up, largest", motion->start_up_m, "m");
     }
     facts.add("Published mean error", result.published.error_m, "m");
+    facts.add("Published winner, not comparable", result.published.difference);
     facts.add("Median error", summary.median, "m");
     facts.add("95th percentile", summary.percentile_95, "m");
     facts.add("Worst error", summary.worst, "m");
@@ -180,11 +181,17 @@ json make_run_facts(const RecordedRun& run) {
 json make_headline(const RecordedRun& run, const History& history) {
   const auto times = find_times(run.folder);
   const std::int64_t cases = history.parts.empty() ? 0 : history.parts.back().cases;
-  json headline = {{"started", run.started},   {"evaluations", run.journal.training.size()},
-                   {"cases", cases},           {"value", nullptr},
-                   {"quantity", nullptr},      {"failures", nullptr},
-                   {"test_cases", nullptr},    {"total_torque_n_m", nullptr},
-                   {"total_force_n", nullptr}, {"motion", nullptr},
+  json headline = {{"faults", run.result ? list_faults(*run.result) : std::vector<std::string>()},
+                   {"started", run.started},
+                   {"evaluations", run.journal.training.size()},
+                   {"cases", cases},
+                   {"value", nullptr},
+                   {"quantity", nullptr},
+                   {"failures", nullptr},
+                   {"test_cases", nullptr},
+                   {"total_torque_n_m", nullptr},
+                   {"total_force_n", nullptr},
+                   {"motion", nullptr},
                    {"times", nullptr}};
   if (times) {
     headline["times"] = {{"wall_s", times->wall_s},

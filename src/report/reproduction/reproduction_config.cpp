@@ -91,15 +91,20 @@ ReproductionConfig load_reproduction_config(const std::string& name_or_path) {
   config.optimizer = table.get(kReproOptimizer);
   config.seed = static_cast<std::uint64_t>(table.get(kReproSeed));
   config.engine = table.get(kReproEngine);
+  config.overrides = table.get_or(kReproSet, {});
   for (const ConfigTable& run : table.get_tables_or_empty(kReproRunsTable)) {
     config.runs.push_back(read_run(run));
+    config.runs.back().overrides = config.overrides;
   }
   for (const ConfigTable& design : table.get_tables_or_empty(kReproUnpublishedTable)) {
     config.unpublished.push_back(read_unpublished(design));
+    config.unpublished.back().overrides = config.overrides;
   }
   config.sweep = table.get(kReproSweep);
   for (const ConfigTable& again : table.get_tables_or_empty(kReproReevaluationTable)) {
     config.reevaluations.push_back(read_reevaluation(again));
+    std::vector<std::string>& overrides = config.reevaluations.back().overrides;
+    overrides.insert(overrides.begin(), config.overrides.begin(), config.overrides.end());
   }
   for (const ConfigTable& figure : table.get_tables_or_empty(kReproFigureTable)) {
     config.figures.push_back(read_figure(figure));

@@ -53,6 +53,8 @@ struct ReproductionConfig {
   std::string optimizer;  // of the runs
   std::uint64_t seed = 1;
   std::string engine;  // for training and judging the runs
+  std::vector<std::string>
+      overrides;  // KEY=VALUE texts for all problems but those of published designs
   // The next three are incomplete: the plan completes them.
   std::vector<ReproductionPart> runs;           // label and problem
   std::vector<ReproductionPart> unpublished;    // designs whose errors the source does not print

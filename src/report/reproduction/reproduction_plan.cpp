@@ -147,8 +147,9 @@ class Planner {
   static RunPlan make_run(const ReproductionConfig& config, const std::string& name) {
     RunPlan run;
     run.seed = config.seed;
-    const std::vector<std::string> overrides = {"physics.engine=" + config.engine,
-                                                "physics.judging_engine=" + config.engine};
+    std::vector<std::string> overrides = config.overrides;
+    overrides.push_back("physics.engine=" + config.engine);
+    overrides.push_back("physics.judging_engine=" + config.engine);
     run.problem = load_problem(name, overrides);
     run.optimizer = load_optimizer(config.optimizer);
     run.options = Options::parse(run.optimizer.name, run.optimizer.options, {});
@@ -175,7 +176,8 @@ class Planner {
       part.label = fmt::format("{} {}", name, format_exact(value));
       part.design = file.name;
       part.problem = name;
-      part.overrides = {problem.sweep->parameter + "=" + format_exact(value)};
+      part.overrides = file.published.front().overrides;
+      part.overrides.push_back(problem.sweep->parameter + "=" + format_exact(value));
       part.value = value;
       add(std::move(part), file.design);
     }

@@ -229,7 +229,8 @@ const ControllerRow& find_controller(std::string_view name) {
       return row;
     }
   }
-  throw Error(ErrorKind::usage, describe_unknown("controller", name, controller_names()));
+  throw Error(ErrorKind::usage, describe_unknown("controller", name, controller_names(),
+                                                 "armwright list controllers"));
 }
 
 std::string get_joint_unit(std::string_view unit, JointKind kind) {

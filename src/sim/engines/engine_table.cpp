@@ -141,7 +141,7 @@ const EngineRow& find_engine(std::string_view name, std::span<const EngineRow> t
                   fmt::format("engine '{}' is not there: {}", name, missing.reason));
     }
   }
-  throw Error(ErrorKind::usage, describe_unknown("engine", name, names));
+  throw Error(ErrorKind::usage, describe_unknown("engine", name, names, "armwright list engines"));
 }
 
 EngineOptions resolve_options(const EngineRow& engine, EngineOptions options) {

@@ -172,12 +172,20 @@ bool ElbowUpKinematics::solve(const Eigen::Vector3d& target_m, std::span<double,
   return targets::solve(arm_, target_m.data(), q.data());
 }
 
+std::string ask_millimetres(double distance_m, double reach_m) {
+  constexpr double kImplausible = 10;
+  return distance_m > kImplausible * reach_m ? "; were millimetres meant? All lengths are in metres"
+                                             : "";
+}
+
 std::string ElbowUpKinematics::describe_unreachable(const Eigen::Vector3d& target_m) const {
+  const double distance_m = targets::calc_wrist_distance(arm_, target_m.data());
+  const double reach_m = arm_.upper_arm_m + arm_.forearm_m;
   return fmt::format(
       "target {} m is out of reach: the wrist would be {:.6g} m from the shoulder, possible is "
-      "{:.6g} to {:.6g} m",
-      describe(target_m), targets::calc_wrist_distance(arm_, target_m.data()),
-      std::abs(arm_.upper_arm_m - arm_.forearm_m), arm_.upper_arm_m + arm_.forearm_m);
+      "{:.6g} to {:.6g} m{}",
+      describe(target_m), distance_m, std::abs(arm_.upper_arm_m - arm_.forearm_m), reach_m,
+      ask_millimetres(distance_m, reach_m));
 }
 
 }  // namespace armwright

@@ -32,6 +32,10 @@ Eigen::Vector3d calc_tip_position(const RobotModel& model, std::span<const doubl
 // link vector, thesis Table B.1). So the wrist's horizontal distance became sqrt(f^2 + 0.1225^2).
 inline constexpr double kIkBugOffset_m = 0.1225;
 
+// Returns the question that follows a place out of reach, "; were millimetres meant? ...", if the
+// place is ten times as far away as the arm reaches. Otherwise returns an empty text.
+std::string ask_millimetres(double distance_m, double reach_m);
+
 // The closed-form inverse kinematics of a palletising arm with its elbow up and its last link
 // pointing straight down (thesis section 5.1). Such an arm has a vertical first axis (the world's z
 // axis), then three parallel horizontal axes (along y at angle zero). Its tip lies in the vertical
@@ -61,7 +65,7 @@ class ElbowUpKinematics {
   bool solve(const Eigen::Vector3d& target_m, std::span<double, 4> q) const;
 
   // Returns "target (x, y, z) m is out of reach: the wrist would be B m from the shoulder, possible
-  // is MIN to MAX m".
+  // is MIN to MAX m", and ask_millimetres().
   std::string describe_unreachable(const Eigen::Vector3d& target_m) const;
 
   const targets::ElbowUpArm& arm() const { return arm_; }

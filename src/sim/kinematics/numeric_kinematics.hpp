@@ -140,6 +140,8 @@ class NumericKinematics {
   bool has_middle(std::size_t joint) const { return chain_[joint].has_middle; }
   const std::vector<double>& home() const { return home_; }
   std::size_t joint_count() const { return chain_.size(); }
+  // Returns a distance from the first joint (m) that the tip cannot exceed; may be infinite.
+  double reach_m() const { return lane_chain_.reach_m; }
   // Returns a random posture, one position per joint, drawn from the part of the joint's range
   // within +-pi rad or +-1 m.
   std::vector<double> draw_posture(RandomStream& random) const;

@@ -210,6 +210,7 @@ std::string describe_unreachable(const NumericKinematics& kinematics, const Robo
                         rpy.y(), rpy.z());
   }
   text += " is out of reach";
+  const std::string question = ask_millimetres(target.position_m.norm(), kinematics.reach_m());
   std::vector<std::string> ends;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Joint& joint = robot.joints[i];
@@ -219,12 +220,12 @@ std::string describe_unreachable(const NumericKinematics& kinematics, const Robo
     }
   }
   if (!ends.empty()) {
-    return fmt::format("{}: at the end of its range is {}", text, join(ends, ", "));
+    return fmt::format("{}: at the end of its range is {}{}", text, join(ends, ", "), question);
   }
   if (kinematics.calc_dexterity(from) < 5 * kSingularDexterity) {
     text += ", the arm being stretched out or otherwise singular there";
   }
-  return text;
+  return text + question;
 }
 
 }  // namespace armwright

@@ -285,7 +285,8 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
   }
   if (!plan.baselines) {
     sentences.push_back(
-        "The baselines (random search and a local search) were left out on request: whether any "
+        "The baselines (the start, random search and a local search) were left out on request: "
+        "whether any "
         "of these optimizers is better than those was not asked.");
   }
   const auto methods = std::ranges::count_if(plan.optimizers, [](const StudyOptimizer& one) {

@@ -91,7 +91,7 @@ std::string describe_unused_budget(const StudyPlan& plan, std::span<const Method
   std::vector<std::string> parts;
   for (std::size_t o = 0; o < facts.size(); ++o) {
     const MethodFacts& one = facts[o];
-    if (one.early_runs == 0) {
+    if (one.early_runs == 0 || plan.optimizers[o].row.name == kStartBaseline) {
       continue;
     }
     std::vector<std::string> reasons;

@@ -317,13 +317,14 @@ void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, boo
                 "the study names no optimizer; give --optimizers A,B, or in its file "
                 "optimizers = [\"A\", \"B\"] (armwright list optimizers)");
   }
-  bool has_random = false, has_local = false;
+  bool has_start = false, has_random = false, has_local = false;
   for (const NamedOptimizer& named : raw.optimizers) {
     plan.optimizers.push_back(load_study_optimizer(named, rows, reads_plugins));
     OptimizerRow& row = plan.optimizers.back().row;
     if (raw.is_recorded && named.description.empty()) {
       row.description.clear();  // version 1.0 recorded none of plugins
     }
+    has_start = has_start || row.name == kStartBaseline;
     has_random = has_random || row.name == kRandomBaseline;
     has_local = has_local || row.capabilities.local;
   }
@@ -341,6 +342,9 @@ void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, boo
   };
   // A recorded plan lists its baselines. What a plugin is may not be recorded.
   const bool lists_baselines = raw.is_recorded && reads_plugins;
+  if (plan.baselines && !raw.is_recorded && !has_start) {
+    add(kStartBaseline);
+  }
   if (plan.baselines && !lists_baselines && !has_random) {
     add(kRandomBaseline);
   }

@@ -285,6 +285,18 @@ StudyPlan load_study_plan(const std::filesystem::path& folder, const AskUser& as
   return make_study_plan(request);
 }
 
+namespace {
+
+// Returns a sentence if the budgets of two plans differ, else an empty text.
+std::string explain_study_budget(const json& recorded, const json& now) {
+  return recorded.at("budget") == now.at("budget")
+             ? ""
+             : "Another budget needs another study, because every value, curve and rank in the "
+               "finished cells is that of the recorded budget. ";
+}
+
+}  // namespace
+
 StudyFolder::StudyFolder(const std::filesystem::path& path, const StudyPlan& plan)
     : folder_(Folder::make(path, path)), lock_(take_lock(folder_)) {
   const std::string text = to_toml(plan);
@@ -385,10 +397,11 @@ void StudyFolder::extend(const StudyPlan& plan, const std::string& text,
     throw Error(
         ErrorKind::usage,
         fmt::format("{} holds a study whose cells could not be compared with those of "
-                    "this plan:\n  {}\nReplicates, problems and optimizers can only be added. To "
+                    "this plan:\n  {}\n{}Replicates, problems and optimizers can only be added. To "
                     "continue the recorded study: armwright compare {} --out {}. For another one: "
                     "--new, or another folder with --out",
-                    path().string(), join(differences, "\n  "), file.string(), path().string()));
+                    path().string(), join(differences, "\n  "), explain_study_budget(recorded, now),
+                    file.string(), path().string()));
   }
   if (!additions_.empty()) {
     int number = 1;

@@ -97,7 +97,7 @@ struct StudyPlan {
   std::int64_t first_checkpoint = 1;
   // Engine that simulates the best design of every optimizer and problem again; empty for none.
   std::string final_engine;
-  bool baselines = true;  // adds a random search and a local search to the optimizers
+  bool baselines = true;  // adds the start, a random search and a local search to the optimizers
   StudyValue value = StudyValue::objective;
   std::vector<StudyTarget> targets;
   // Label of the reference optimizer. Tables show the expected running time of every optimizer also
@@ -108,7 +108,8 @@ struct StudyPlan {
   ProgramSource programs;  // where the programs of users' problems come from
 };
 
-// The baselines, which are part of every comparison: a useful method must beat both.
+// The baselines, which are part of every comparison: a useful method must beat all of them.
+inline constexpr std::string_view kStartBaseline = "start";
 inline constexpr std::string_view kRandomBaseline = "random";
 inline constexpr std::string_view kLocalBaseline = "nlopt:neldermead";
 

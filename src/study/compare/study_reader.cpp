@@ -51,7 +51,7 @@ const Setting<double> kStudyStartSpread{
     "width of the box that starts are drawn from, as a share of the bounds"};
 const Setting<bool> kStudyBaselines{
     "baselines", StudyPlan{}.baselines,
-    "whether random search and a local search are added to the optimizers"};
+    "whether the start, random search and a local search are added to the optimizers"};
 const Setting<int> kStudyCheckpoints{
     "checkpoints",
     {.lower = 1, .upper = 1000},
@@ -282,7 +282,8 @@ const SettingTable& study_settings() {
                    &kStudyFirstCheckpoint, &kStudyTolerance, &kStudyFinalEngine, &kStudyValue,
                    &kStudyReference, &kStudyPlanHash},
       .tables = {&kSelectionSettings, &kProblemEntrySettings, &kOptimizerEntrySettings,
-                 &kTargetSettings}};
+                 &kTargetSettings},
+      .listed_as = "study:"};
   return settings;
 }
 

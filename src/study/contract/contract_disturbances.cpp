@@ -96,11 +96,11 @@ ContractFinding check_resume_on(const std::shared_ptr<const Problem>& problem,
   plan.problem.resolved_json = "{}";
   plan.optimizer = row;
   plan.options = options;
-  plan.budget = 150;
   const TemporaryFolder folder;
-  const auto run = [&](const char* name, std::uint64_t stop_after) {
+  const auto run = [&](const char* name, std::uint64_t stop_after, std::int64_t budget = 150) {
     StopSignal stop;
     StoppingObserver observer(stop, stop_after);
+    plan.budget = budget;
     return execute_run({plan, folder / name, 2, {}}, stop, observer);
   };
   const auto whole = run("whole", UINT64_MAX);
@@ -124,6 +124,19 @@ ContractFinding check_resume_on(const std::shared_ptr<const Problem>& problem,
   }
   if (to_json(*whole) != to_json(*resumed)) {
     return make_broken("a run that was stopped and resumed ends with another result");
+  }
+  if (row.capabilities.paced) {
+    return {};
+  }
+  const auto begun = run("continued", UINT64_MAX, 75);
+  const auto continued = run("continued", UINT64_MAX);
+  if (!begun || !continued) {
+    return make_broken("a run that nobody stopped has not ended");
+  }
+  if (to_json(*whole) != to_json(*continued)) {
+    return make_broken(
+        "a run that was continued with twice the budget ends with another result; declare 'paced' "
+        "if it plans with the budget");
   }
   return {};
 }

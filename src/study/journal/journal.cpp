@@ -70,10 +70,18 @@ class Journal::Writer {
 
   template <class Record>
   void append(const Record& record) {
+    constexpr bool continues = std::is_same_v<Record, ContinueRecord>;
     const std::string bytes = encode(record);  // outside the lock, in parallel
     const std::lock_guard lock(mutex_);
+    ended_ = ended_ && !continues;
     add(bytes);
     ended_ = std::is_same_v<Record, EndRecord>;
+    if (continues) {
+      write_buffer();
+      unsynced_ = false;
+      remember_error("sync it to the disk", sync_data(fd_.get()));
+      throw_if_failed();
+    }
   }
 
   void flush() {
@@ -305,6 +313,9 @@ void Journal::append(const LateRecommendations& record) {
   writer_->append(record);
 }
 void Journal::append(const EndRecord& record) {
+  writer_->append(record);
+}
+void Journal::append(const ContinueRecord& record) {
   writer_->append(record);
 }
 void Journal::flush() {

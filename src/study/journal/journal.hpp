@@ -31,7 +31,7 @@
 
 namespace armwright {
 
-// The last record of a run that has ended.
+// The last record of a run that has ended, unless the run is continued.
 struct EndRecord {
   std::string reason;             // "budget" or "optimizer finished"
   std::uint64_t evaluations = 0;  // training evaluations of the whole run, over all its starts
@@ -45,15 +45,22 @@ struct LateRecommendations {
   std::vector<double> x;  // all vectors, one after the other
 };
 
+// Says that the run goes on with a larger budget. The records before it stay: evaluations and
+// judgements count as before, but an end and late recommendations are those of the smaller budget.
+struct ContinueRecord {
+  std::uint64_t budget = 0;       // the larger one, in training cases
+  std::uint64_t evaluations = 0;  // training evaluations that were recorded before
+};
+
 // The records of a journal.
 struct JournalContent {
   RecordedEvaluations training;
   std::vector<EvaluationRecord> judgements;  // validation and test, in the order written
-  std::optional<LateRecommendations> late;
-  bool ended = false;
-  EndRecord end;                   // valid if `ended`
-  std::uint64_t intact_bytes = 0;  // up to the end of the last intact record
-  std::uint64_t torn_bytes = 0;    // the size of the torn end behind it
+  std::optional<LateRecommendations> late;   // behind the last ContinueRecord
+  bool ended = false;                        // likewise
+  EndRecord end;                             // valid if `ended`
+  std::uint64_t intact_bytes = 0;            // up to the end of the last intact record
+  std::uint64_t torn_bytes = 0;              // the size of the torn end behind it
 };
 
 // A journal is open for appending from its construction until close(). append() and flush() are
@@ -73,10 +80,11 @@ class Journal {
 
   // Append a record. Throw Error{bad_data} if the record is too large for the journal, Error{io} if
   // a write or a sync has failed since the opening, and std::logic_error after close() or after an
-  // end record.
+  // end record. Only a ContinueRecord may follow an end; it is on the disk when append() returns.
   void append(const EvaluationRecord& record);
   void append(const LateRecommendations& record);
   void append(const EndRecord& record);
+  void append(const ContinueRecord& record);
   // Writes all appended records to the operating system. Throws Error{io} if a write or a sync has
   // failed since the opening.
   void flush();

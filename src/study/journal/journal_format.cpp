@@ -24,6 +24,7 @@ constexpr std::uint8_t kJacobianType = 3;
 constexpr std::uint8_t kLateType = 4;
 constexpr std::uint8_t kProposalType = 5;
 constexpr std::uint8_t kJacobianProposalType = 6;
+constexpr std::uint8_t kContinueType = 7;
 constexpr unsigned kStatuses = 1 + static_cast<unsigned>(EvaluationStatus::abandoned);
 
 bool has_jacobian(std::uint8_t type) {
@@ -74,6 +75,9 @@ void visit_fields(std::uint8_t type, Fields& fields, Record& record) {
   } else if constexpr (std::is_same_v<std::remove_const_t<Record>, LateRecommendations>) {
     fields.number(record.count);
     fields.list(record.x);
+  } else if constexpr (std::is_same_v<std::remove_const_t<Record>, ContinueRecord>) {
+    fields.number(record.budget);
+    fields.number(record.evaluations);
   } else {
     visit_evaluation(type, fields, record);
   }
@@ -221,6 +225,8 @@ auto with_blank_record(std::string_view payload, OnBlank on_blank)
       return on_blank(type, EndRecord());
     case kLateType:
       return on_blank(type, LateRecommendations());
+    case kContinueType:
+      return on_blank(type, ContinueRecord());
     default:
       return {};
   }
@@ -241,6 +247,10 @@ void encode(const LateRecommendations& record, std::string& buffer) {
 
 void encode(const EndRecord& record, std::string& buffer) {
   encode_as(kEndType, record, buffer);
+}
+
+void encode(const ContinueRecord& record, std::string& buffer) {
+  encode_as(kContinueType, record, buffer);
 }
 
 Frame decode_frame(std::string_view bytes) {
@@ -274,6 +284,9 @@ bool could_begin_payload(std::string_view probe, std::uint32_t payload_bytes) {
     read.choice(record.cases.role, 3);
     read.choice(record.evaluation.status, kStatuses);
     return read.good;
+  }
+  if (type == kContinueType) {
+    return payload_bytes == 1 + 2 * sizeof(std::uint64_t);
   }
   // Both other types have a number and one list.
   std::uint64_t number = 0;

@@ -4,7 +4,7 @@
 //   file       = "AWJRNL01" record*
 //   record     = u32 payload length | u32 CRC-32 of the payload | payload
 //   payload    = evaluation | evaluation with Jacobian | late recommendations | end
-//                | evaluation with proposal | evaluation with Jacobian and proposal
+//                | evaluation with proposal | evaluation with Jacobian and proposal | continue
 //   evaluation = u8 1 | u8 clipped | u8 role | u8 status | i32 failed_cases | u64 index
 //                | u64 generation
 //                | text set | list numbers (u64) | list x | text reason
@@ -15,6 +15,7 @@
 //   evaluation with Jacobian and proposal = u8 6 | as evaluation with Jacobian | list proposed
 //   late recommendations = u8 4 | u64 count | list x (one vector after the other)
 //   end        = u8 2 | u64 evaluations | text reason
+//   continue   = u8 7 | u64 budget | u64 evaluations
 //   text       = u32 length | bytes          list = u32 count | 8 bytes each
 #pragma once
 
@@ -36,13 +37,14 @@ inline constexpr std::size_t kProbeBytes = 13;  // of could_begin_payload(); the
 // written, and counts as damage when it is read.
 inline constexpr std::size_t kMaxPayloadBytes = std::size_t{64} << 20;
 
-using Record = std::variant<EvaluationRecord, LateRecommendations, EndRecord>;
+using Record = std::variant<EvaluationRecord, LateRecommendations, EndRecord, ContinueRecord>;
 
 // Appends the record with its frame to `buffer`. Throws Error{bad_data} if the payload is larger
 // than kMaxPayloadBytes; `buffer` is unchanged then.
 void encode(const EvaluationRecord& record, std::string& buffer);
 void encode(const LateRecommendations& record, std::string& buffer);
 void encode(const EndRecord& record, std::string& buffer);
+void encode(const ContinueRecord& record, std::string& buffer);
 
 struct Frame {
   std::uint32_t payload_bytes = 0;

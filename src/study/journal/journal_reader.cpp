@@ -175,13 +175,17 @@ JournalContent scan_journal(FileDescriptor descriptor, const std::filesystem::pa
       }
       break;
     }
-    if (content.ended) {
+    const bool continues = std::holds_alternative<ContinueRecord>(*attempt.record);
+    if (content.ended && !continues) {
       throw Error(ErrorKind::bad_data,
                   fmt::format("{}: record {} at byte {} follows the record that ends the "
                               "run. {}",
                               file.string(), number + 1, offset, advise_on_damage(file)));
     }
-    if (auto* const end = std::get_if<EndRecord>(&*attempt.record)) {
+    if (continues) {
+      content.ended = false;
+      content.late.reset();
+    } else if (auto* const end = std::get_if<EndRecord>(&*attempt.record)) {
       content.ended = true;
       content.end = std::move(*end);
     } else if (auto* const late = std::get_if<LateRecommendations>(&*attempt.record)) {

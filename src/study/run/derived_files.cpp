@@ -245,6 +245,7 @@ void write_derived_files(const RunFolder& folder, const RunPlan& plan, const Run
     }
   }
   FolderChecksums(files).drop(changing);
+  files.remove(kCheckFile);  // of the winner that the folder had
   if (all) {
     write_convergence_csv(files, plan.problem.problem->description(), journal.training);
     journal.judgements = select_judgements(journal, result);

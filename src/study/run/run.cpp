@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/folder_checksums.hpp"
 #include "base/text.hpp"
+#include "problems/identification/identification_problem.hpp"
 #include "problems/user/user_problem.hpp"
 #include "process/output_log.hpp"
 #include "process/stop_scope.hpp"
@@ -121,6 +122,13 @@ void check_not_idle(const RunPlan& plan, const RunEvaluator& evaluator) {
   }
 }
 
+// Returns whether the start is judged beside the winner. Nobody asked for a comparison's cell, the
+// cases of a told run cost the caller, and an identification starts with a fit of its own.
+bool judges_start(const RunRequest& request, const RunPlan& plan) {
+  return request.derived == DerivedFiles::all && plan.selection.most > 0 &&
+         !plan.selection.evaluated_only && find_identification(*plan.problem.problem) == nullptr;
+}
+
 // Measures what the winner of an arm does beside its errors at rest, on the cases of its test.
 // Returns false if stopped. A comparison's cells and told runs are not simulated again. Runs that
 // version 1.0 began do not get the fields that it did not know.
@@ -176,6 +184,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   if (request.derived == DerivedFiles::all) {
     check_path(request.folder);
   }
+  keep_pace(request.folder, plan);
   const auto optimizer = plan.optimizer.make(plan.options);
   optimizer->check_problem(plan.problem.problem->description());
   plan.optimizer.input_hashes.merge(optimizer->list_inputs());
@@ -183,11 +192,13 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     plan.selection.most = 0;
   }
   const RunFolder folder(request.folder, request.root, plan, request.command_line);
-  if (are_derived_files_there(folder, plan, request.derived)) {
+  const bool continues = folder.continued_budget() > 0;
+  if (!continues && are_derived_files_there(folder, plan, request.derived)) {
     RunResult result = load_result(folder.path());
     if (request.derived == DerivedFiles::all) {  // a comparison's user did not ask for this cell
-      observer.on_message(fmt::format("{}: this run is complete; use --new for another one",
-                                      folder.path().string()));
+      observer.on_message(fmt::format(
+          "{}: this run is complete; use --new for another one{}", folder.path().string(),
+          explain_no_continuation(plan).empty() ? ", or continue it with a larger --budget" : ""));
       warn_of_lost_journal(folder, result, observer);
     }
     return result;
@@ -202,6 +213,17 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   JournalContent recorded;
   Journal journal(folder.folder(), folder.journal().filename().string(), recorded);
   describe_start(folder, request.ask != nullptr, recorded, observer);
+  bool has_begun = !continues;
+  const auto begin = [&] {
+    folder.record_larger_budget(journal, recorded.training.size());
+    has_begun = true;
+  };
+  if (continues) {  // an end and late recommendations of the smaller budget are not those of this run
+    recorded.ended = false;
+    recorded.late.reset();
+    observer.on_message(fmt::format("continuing with a budget of {} in place of {}", plan.budget,
+                                    folder.continued_budget()));
+  }
   std::optional<ThreadExecutor> threads;
   if (request.executor == nullptr) {
     threads.emplace(request.jobs);
@@ -209,6 +231,9 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   }
   CaseExecutor& executor = request.executor != nullptr ? *request.executor : *threads;
   RunEvaluator evaluator(plan, executor, stop, journal, recorded, observer);
+  if (continues) {
+    evaluator.begin_with(begin);
+  }
   if (request.ask) {
     evaluator.ask_instead([&](std::span<const EvaluationRecord* const> missing) {
       request.ask(folder.folder(), missing);
@@ -228,11 +253,20 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     add_time();
     return std::nullopt;
   }
+  if (!result.failure.empty() && !has_begun) {
+    throw Error(ErrorKind::bad_data,
+                fmt::format("{}: the optimizer failed before it asked for anything new, so the run "
+                            "stays as it was with a budget of {}",
+                            folder.path().string(), folder.continued_budget()));
+  }
   if (!result.failure.empty()) {
     evaluator.take_remaining_recorded();
     result.end_reason = "optimizer failed";
   } else {
     evaluator.check_replay_complete();
+    if (!has_begun) {
+      begin();
+    }
     describe_end(plan, evaluator, result);
   }
   evaluator.take_late_recommendations();
@@ -246,7 +280,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     training = read_journal(folder.journal()).training;
   }
   if (!select_winner(plan, evaluator.select_candidates(), recorded, training, executor, stop,
-                     journal, observer, result)) {
+                     journal, observer, judges_start(request, plan), result)) {
     journal.close();
     add_time();
     return std::nullopt;

@@ -1,6 +1,8 @@
 // Executes one run from its plan to its result: optimizes, evaluates the candidates on the
 // validation set and the winner on the test set, and writes the derived files. A run can be
-// interrupted at any moment; executing it again with the same plan and folder resumes it.
+// interrupted at any moment; executing it again with the same plan and folder resumes it. With a
+// larger budget and otherwise the same plan, a run goes on, whether it had ended or not
+// (RunFolder::record_larger_budget()).
 #pragma once
 
 #include <filesystem>

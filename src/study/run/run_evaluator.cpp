@@ -221,10 +221,13 @@ void RunEvaluator::check_replay(const EvaluationRecord& request, const Evaluatio
 void RunEvaluator::refuse_replay(std::uint64_t evaluation, const std::string& difference) const {
   throw Error(
       ErrorKind::bad_data,
-      fmt::format("evaluation {} of the journal is not what optimizer '{}' asks for now: {}. "
-                  "The run was made by another version, machine or plugin; resume it there, "
-                  "or start a new run with --new",
-                  evaluation, plan_.optimizer.name, difference));
+      fmt::format("evaluation {} of the journal is not what optimizer '{}' asks for now: {}. {}",
+                  evaluation, plan_.optimizer.name, difference,
+                  begin_ ? "With the larger budget it searches otherwise from the beginning, or "
+                           "the run was made by another version, machine or plugin. The run stays "
+                           "as it was; start a new run with --new"
+                         : "The run was made by another version, machine or plugin; resume it "
+                           "there, or start a new run with --new"));
 }
 
 void RunEvaluator::check_replay_complete() const {
@@ -308,6 +311,9 @@ std::vector<Score> RunEvaluator::evaluate_batch(std::span<const std::vector<doub
   const std::vector<std::size_t> missing = answer_from_journal(batch);
   if (journal_ended_ && !missing.empty()) {
     refuse_replay(batch.records[missing.front()].index, "the recorded run had ended before it");
+  }
+  if (begin_ && !missing.empty()) {
+    std::exchange(begin_, nullptr)();
   }
   if (halves && !missing.empty()) {
     halve(batch);  // simulates the whole race again and uses no recorded outcome

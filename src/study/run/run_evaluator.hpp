@@ -40,6 +40,10 @@ class RunEvaluator final : public Evaluator {
   // does. The plan must have no racing.
   void ask_instead(Ask ask) { ask_ = std::move(ask); }
 
+  // Calls `begin` once, before the first evaluation that the journal lacks. Until then, what does not
+  // replay is explained by the larger budget with which the run is continued.
+  void begin_with(std::function<void()> begin) { begin_ = std::move(begin); }
+
   // Returns the problem as the optimizer can treat it.
   const ProblemDescription& problem() const override { return treated_.description(); }
   // Besides what the Evaluator declares, throws Error{bad_data} if the journal holds another
@@ -114,7 +118,8 @@ class RunEvaluator final : public Evaluator {
   Journal& journal_;
   RunObserver& observer_;
   const TreatedProblem treated_;
-  Ask ask_;  // empty if candidates are simulated
+  Ask ask_;                      // empty if candidates are simulated
+  std::function<void()> begin_;  // empty if called, or if the run is not continued
   const RecordedEvaluations recorded_;
   bool budget_spent_ = false;
   bool stopped_ = false;

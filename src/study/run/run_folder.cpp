@@ -175,6 +175,7 @@ void remove_consequences(json& recorded, json& now) {
       }
     }
   };
+  remove("/problem/run", "optimizer");  // the default, which the run need not have
   if (differs("/run/budget")) {
     remove("/problem/run", "budget");
   }
@@ -216,6 +217,38 @@ std::string explain_instance(const json& recorded, const json& now) {
 
 }  // namespace
 
+namespace {
+
+// Returns the configuration with the budget of the recorded one, and with the pace with which the
+// recorded run began (keep_pace()).
+json take_recorded_budget(const json& recorded, json now, const OptimizerRow& optimizer) {
+  for (const char* const pointer : {"/run/budget", "/problem/run/budget"}) {
+    const json::json_pointer place(pointer);
+    if (recorded.contains(place) && now.contains(place)) {
+      now[place] = recorded[place];
+    }
+  }
+  const std::string& pace = optimizer.pace_option;
+  json& options = now["run"]["options"];
+  const json before = find(recorded, "/run/options");
+  options.erase(pace);
+  if (!pace.empty() && before.contains(pace)) {
+    options[pace] = before[pace];
+  }
+  return now;
+}
+
+// Returns advice if the budgets differ, else an empty text.
+std::string explain_budget(std::int64_t recorded, const RunPlan& plan) {
+  if (recorded > plan.budget) {
+    return "\nA larger budget can continue a run, and a smaller one cannot";
+  }
+  const std::string why = recorded < plan.budget ? explain_no_continuation(plan) : "";
+  return why.empty() ? "" : "\nThe larger budget does not continue this run: " + why;
+}
+
+}  // namespace
+
 RunFolder::RunFolder(const std::filesystem::path& path, const std::filesystem::path& root,
                      const RunPlan& plan, std::span<const std::string> command_line)
     : folder_(claim_folder(path, root)), lock_(take_lock(folder_, obstacle_)) {
@@ -232,14 +265,28 @@ RunFolder::RunFolder(const std::filesystem::path& path, const std::filesystem::p
   has_checksums_ = manifest["has_checksums"].get<bool>();
   const json& recorded = manifest["configuration"];
   const json now = json::parse(to_json(plan));
-  const std::vector<std::string> changes = list_changes(recorded, now);
+  std::vector<std::string> changes = list_changes(recorded, now);
+  const json budget = find(recorded, "/run/budget");
+  const std::int64_t before = budget.is_number_integer() ? budget.get<std::int64_t>() : plan.budget;
+  if (before < plan.budget && explain_no_continuation(plan).empty() &&
+      list_changes(recorded, take_recorded_budget(recorded, now, plan.optimizer)).empty()) {
+    changes.clear();
+    continued_budget_ = before;
+    budget_ = plan.budget;
+    json larger = manifest;
+    const json words = make_manifest(plan, command_line);
+    larger["configuration"] = words["configuration"];
+    larger["command_line"] = words["command_line"];
+    manifest_ = larger.dump(2) + "\n";
+  }
   if (!changes.empty()) {
     throw Error(
         ErrorKind::usage,
         fmt::format("{} holds a run with another configuration:\n  {}{}\nResume it with the "
-                    "recorded configuration, or use --new or --out for another folder{}{}",
+                    "recorded configuration, or use --new or --out for another folder{}{}{}",
                     path.string(), join(changes, "\n  "), describe_command(manifest),
-                    explain_simd(recorded, now), explain_instance(recorded, now)));
+                    explain_budget(before, plan), explain_simd(recorded, now),
+                    explain_instance(recorded, now)));
   }
   warnings_ =
       describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");
@@ -251,6 +298,24 @@ void RunFolder::check_writable() const {
   }
 }
 
+void RunFolder::record_larger_budget(Journal& journal, std::uint64_t evaluations) const {
+  FolderChecksums checksums(folder_);
+  std::vector<std::string> changing = {"journal"};
+  for (const auto& [name, sha256] : checksums.lines()) {
+    if (is_derived_file(name)) {
+      changing.push_back(name);
+    }
+  }
+  checksums.drop(changing);
+  for (const std::string& name : derived_file_names()) {
+    folder_.remove(name);
+  }
+  journal.append(ContinueRecord{static_cast<std::uint64_t>(budget_), evaluations});
+  const std::pair<std::string, std::string> manifest("manifest.json", manifest_);
+  checksums.write({&manifest, 1});
+  checksums.save();
+}
+
 const std::vector<std::string>& derived_file_names() {
   static const std::vector<std::string> names = {"result.json",
                                                  "winner.toml",
@@ -260,6 +325,7 @@ const std::vector<std::string>& derived_file_names() {
                                                  "winner-record.csv",
                                                  "results.sqlite",
                                                  "cell.json",
+                                                 kCheckFile,
                                                  kPlantFile,
                                                  kIdentificationFile};
   return names;
@@ -289,6 +355,37 @@ bool has_first_selection(const std::filesystem::path& folder) {
   const json manifest = read_manifest(file);
   const json::json_pointer selection("/configuration/run/selection");
   return manifest.contains(selection) && !manifest[selection].contains("most");
+}
+
+void keep_pace(const std::filesystem::path& folder, RunPlan& plan) {
+  const std::string& pace = plan.optimizer.pace_option;
+  const auto file = folder / "manifest.json";
+  if (pace.empty() || plan.options.get_integer(pace) != 0 || !path_exists(file)) {
+    return;
+  }
+  const json manifest = read_manifest(file);
+  const json recorded = find(manifest, "/configuration/run");
+  const json options = find(recorded, "/options");
+  const json before = options.is_object() ? options.value(pace, json(0)) : json(0);
+  const json budget = find(recorded, "/budget");
+  if (find(recorded, "/optimizer") != plan.optimizer.name || !before.is_number_integer() ||
+      !budget.is_number_integer()) {
+    return;
+  }
+  auto evaluations = before.get<std::int64_t>();
+  if (evaluations == 0 && budget.get<std::int64_t>() < plan.budget) {
+    evaluations = budget.get<std::int64_t>() / plan.schedule.cases;
+  }
+  if (evaluations == 0) {
+    return;
+  }
+  std::vector<std::string> texts = {fmt::format("{}={}", pace, evaluations)};
+  for (const auto& [name, value] : plan.options.values()) {
+    if (name != pace) {
+      texts.push_back(name + "=" + to_text(value));
+    }
+  }
+  plan.options = Options::parse(plan.optimizer.name, plan.optimizer.options, texts);
 }
 
 std::vector<std::string> find_old_settings(const std::filesystem::path& folder,

@@ -6,12 +6,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/folder.hpp"
+#include "study/journal/journal.hpp"
 #include "study/run/run_lock.hpp"
 #include "study/run/run_plan.hpp"
 
@@ -32,7 +34,8 @@ class RunFolder {
   // and its rights do not allow the lock for writing, takes the lock for reading. Throws
   // Error{busy} if another process has the lock, Error{io}, Error{bad_data} if the manifest is
   // damaged or a link is in the way, and Error{usage} if the folder holds other files or a run with
-  // another configuration; the message lists every difference.
+  // another configuration; the message lists every difference. A larger budget alone is no other
+  // configuration if it continues the run (explain_no_continuation()).
   RunFolder(const std::filesystem::path& path, const std::filesystem::path& root,
             const RunPlan& plan, std::span<const std::string> command_line);
 
@@ -44,6 +47,14 @@ class RunFolder {
   void check_writable() const;
   // Returns whether the run has begun with checksums, as all runs since version 2.0 have.
   bool has_checksums() const { return has_checksums_; }
+  // Returns the recorded budget if the plan has a larger one and continues the run; otherwise 0.
+  std::int64_t continued_budget() const { return continued_budget_; }
+  // Records that the run goes on with the budget of the plan. Removes the files that are derived from
+  // its journal, appends a ContinueRecord, and replaces the manifest last. A kill before that leaves
+  // the run of the smaller budget, whose command makes its files again from the journal. A kill after
+  // that leaves an interrupted run of the larger budget. `evaluations` is the number of recorded
+  // training evaluations. To be called once, if continued_budget() is above 0. Throws Error{io}.
+  void record_larger_budget(Journal& journal, std::uint64_t evaluations) const;
   // Returns the differences between the recorded build and this one (version, compiler, CPU), which
   // may keep a resumed run from replaying. Empty if there are none.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -53,6 +64,9 @@ class RunFolder {
   std::string obstacle_;  // to writing; empty if there is none
   RunLock lock_;
   bool has_checksums_ = true;
+  std::int64_t continued_budget_ = 0;
+  std::int64_t budget_ = 0;  // of the plan
+  std::string manifest_;     // that records the larger budget
   std::vector<std::string> warnings_;
 };
 
@@ -66,6 +80,8 @@ inline constexpr const char* kWinnerFiles = "winner-files/";
 // What an identification leaves beside these: the robot's plant, and what is known of the fit.
 inline constexpr const char* kPlantFile = "plant.toml";
 inline constexpr const char* kIdentificationFile = "identification.json";
+// How the winner of an arm does under other conditions (study/verification/winner_check.hpp).
+inline constexpr const char* kCheckFile = "check.json";
 inline constexpr std::size_t kIdentificationLimit_bytes = std::size_t{256} << 20;
 // Returns whether a file, named relative to the run's folder, is derived from the journal.
 bool is_derived_file(const std::string& name);
@@ -73,6 +89,11 @@ bool is_derived_file(const std::string& name);
 // Covers all files of a run that are complete: the manifest, the derived files and, if the run has
 // ended, the journal. Throws Error{io}.
 void cover_run(const Folder& folder, bool has_ended);
+
+// Gives the plan of an optimizer with a pace_option the number of evaluations with which the run in
+// the folder began, if that run has a smaller budget or has been continued. Does nothing if the user
+// has set the option. Throws Error{bad_data} if the manifest is damaged, and Error{io}.
+void keep_pace(const std::filesystem::path& folder, RunPlan& plan);
 
 // Returns whether the folder holds a run whose recorded plan has no Selection::most. Version 1.0
 // began such a run, which keeps the rule of that version. Throws Error{bad_data} if the manifest is
@@ -89,10 +110,12 @@ struct FirstSetting {
   const char* key;      // a JSON pointer
   const char* setting;  // what the key's absence means
 };
-inline constexpr FirstSetting kFirstArm[] = {{"/robot/dynamics", "robot.dynamics=false"},
-                                             {"/robot/plant", "robot.plant=\"\""},
-                                             {"/robot/repair", "robot.repair=false"},
-                                             {"/control/start", "control.start=empty"}};
+inline constexpr FirstSetting kFirstArm[] = {
+    {"/robot/dynamics", "robot.dynamics=false"},
+    {"/robot/plant", "robot.plant=\"\""},
+    {"/robot/repair", "robot.repair=false"},
+    {"/control/start", "control.start=empty"},
+    {"/training/failure_rule", "training.failure_rule=thesis"}};
 
 // Returns the settings that the run in the folder needs in addition to `settings`, with which
 // `problem` was loaded: those above that make the problem what it was in version 1.0, and what it

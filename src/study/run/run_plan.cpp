@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <compare>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/hash.hpp"
+#include "base/setting.hpp"
 #include "base/text.hpp"
 #include "optimizers/table/optimizer_table.hpp"
 #include "problems/user/user_problem.hpp"
@@ -41,6 +45,119 @@ void check_size(const RunPlan& plan) {
                       plan.schedule.cases, kMostNumbers / each));
     }
   }
+}
+
+// Returns how many settings of a file are called `key`, in whatever table.
+std::size_t count_settings(const SettingTable& table, std::string_view key) {
+  auto count = static_cast<std::size_t>(
+      std::ranges::count(table.settings, key, [](const AnySetting* one) { return one->key; }));
+  for (const SettingTable* const inner : table.tables) {
+    count += count_settings(*inner, key);
+  }
+  return count;
+}
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+// Returns "substeps2" for a number and "engine_ode" for a word, or an empty text if a folder's name
+// with such a part could mean other settings, too.
+std::string make_folder_part(const RunPlan& plan, std::string_view key, std::string_view value) {
+  const bool is_key =
+      !key.empty() && is_letter(key.front()) &&
+      std::ranges::all_of(key, [](char c) { return is_letter(c) || c == '_' || c == '.'; });
+  const std::string_view digits = value.starts_with('-') ? value.substr(1) : value;
+  const bool is_number = !digits.empty() && is_digit(digits.front()) && is_digit(digits.back()) &&
+                         std::ranges::all_of(digits, [](char c) {
+                           return is_digit(c) || c == '.' || c == 'e' || c == '-';
+                         });
+  const bool is_word =
+      !value.empty() && is_letter(value.front()) && std::ranges::all_of(value, [](char c) {
+        return is_letter(c) || is_digit(c) || c == '_' || c == '.';
+      });
+  if (!is_key || (!is_number && !is_word)) {
+    return "";
+  }
+  const std::string part = fmt::format("{}{}{}", key, is_word ? "_" : "", value);
+  for (std::size_t end = 1; end < part.size(); ++end) {  // whether another key reads as this part
+    const std::string other = part.substr(0, end);
+    const bool could_end = part[end] == '_' || is_digit(part[end]);
+    if (could_end && other != key &&
+        (count_settings(problem_settings(), other) > 0 || plan.options.values().contains(other))) {
+      return "";
+    }
+  }
+  return part;
+}
+
+// One thing that the user has set. `assignment` is what it means, and `part` what a folder's name shows of it;
+// empty if that would not be clear.
+struct NamedSetting {
+  std::string assignment;
+  std::string part;
+
+  auto operator<=>(const NamedSetting&) const = default;
+};
+
+NamedSetting name_override(const RunPlan& plan, const std::string& setting) {
+  const std::size_t middle = std::min(setting.find('='), setting.size());
+  const auto strip = [](std::string_view text) {
+    const std::size_t begin = std::min(text.find_first_not_of(" \t\""), text.size());
+    return text.substr(begin, text.find_last_not_of(" \t\"") + 1 - begin);
+  };
+  const std::string_view all = setting;
+  const std::string_view key = strip(all.substr(0, middle));
+  const std::string_view value = strip(all.substr(std::min(middle + 1, all.size())));
+  std::string_view shown = key.substr(key.rfind('.') + 1);
+  const auto& options = plan.options.values();
+  if (count_settings(problem_settings(), shown) != 1 || options.contains(std::string(shown))) {
+    shown = key;
+  }
+  return {fmt::format("{}={}", key, value), make_folder_part(plan, shown, value)};
+}
+
+// Returns everything that the user has set and that changes the result, in an order of its own.
+std::vector<NamedSetting> list_named_settings(const RunPlan& plan,
+                                              std::span<const std::string> settings) {
+  std::vector<NamedSetting> named;
+  for (const std::string& setting : settings) {
+    NamedSetting one = name_override(plan, setting);
+    // The name of the problem has the name of the robot already.
+    const bool is_robot = one.assignment.starts_with("robot.urdf=");
+    const std::filesystem::path urdf = one.assignment.substr(one.assignment.find('=') + 1);
+    if (!is_robot || plan.problem.name.find(urdf.stem().string()) == std::string::npos) {
+      named.push_back(std::move(one));
+    }
+  }
+  for (const OptionSpec& spec : plan.optimizer.options) {
+    const auto value = plan.options.values().find(spec.name);
+    if (spec.changes_result && value != plan.options.values().end() &&
+        value->second != spec.fallback) {
+      const std::string text = to_text(value->second);
+      named.push_back(
+          {fmt::format("option {}={}", spec.name, text), make_folder_part(plan, spec.name, text)});
+    }
+  }
+  const auto add_words = [&](const char* what, const std::string& text) {
+    std::string part = text;  // "fixed:10"
+    part.erase(std::min(part.find(':'), part.size()), 1);
+    std::ranges::replace(part, ':', '-');
+    named.push_back({fmt::format("{}={}", what, text), std::move(part)});
+  };
+  if (const std::string schedule = to_text(plan.schedule);
+      schedule != to_text(choose_schedule(plan.problem, plan.optimizer))) {
+    add_words("schedule", schedule);
+  }
+  if (const std::string racing = to_text(plan.racing); racing != to_text(plan.problem.racing)) {
+    add_words("racing", plan.racing.kind == Racing::Kind::none ? "racing_none" : racing);
+  }
+  std::ranges::sort(named);
+  return named;
 }
 
 }  // namespace
@@ -82,6 +199,29 @@ std::string explain_no_race(const OptimizerRow& optimizer, const Racing& racing,
   if (racing.kind == Racing::Kind::abandonment && racing.chunk_cases >= schedule.cases) {
     return fmt::format("chunks of {} leave nothing of {} to give up", racing.chunk_cases,
                        to_text(schedule));
+  }
+  return "";
+}
+
+std::string explain_no_continuation(const RunPlan& plan) {
+  const OptimizerRow& row = plan.optimizer;
+  if (row.capabilities.paced && row.pace_option.empty()) {
+    return fmt::format(
+        "optimizer '{}' plans with the whole budget, so a larger budget changes its run from the "
+        "beginning",
+        sanitize(row.name));
+  }
+  if (plan.schedule.kind == Schedule::Kind::growing) {
+    return fmt::format(
+        "with schedule {} the number of cases grows only while the rest of the budget pays for "
+        "more, so a larger budget changes the run",
+        to_text(plan.schedule));
+  }
+  if (plan.racing.kind != Racing::Kind::none && can_race(row, plan.racing.kind)) {
+    return fmt::format(
+        "racing {} lets as many candidates compete as the rest of the budget pays for, so a larger "
+        "budget changes the run",
+        to_text(plan.racing));
   }
   return "";
 }
@@ -215,6 +355,22 @@ std::string make_run_name(const RunPlan& plan) {
   // "./libmine.so" and "exec:python3 -u mine.py" must not give a hidden file or a path.
   optimizer.erase(0, optimizer.find_first_not_of("-."));
   return fmt::format("{}-{}-seed{}", plan.problem.name, optimizer, plan.seed);
+}
+
+std::string make_folder_name(const RunPlan& plan, std::span<const std::string> settings) {
+  constexpr std::size_t kLongest = 40, kHashDigits = 8;
+  std::string suffix;
+  std::string all;
+  bool is_clear = true;
+  for (const NamedSetting& one : list_named_settings(plan, settings)) {
+    suffix += "-" + one.part;
+    all += one.assignment + "\n";
+    is_clear = is_clear && !one.part.empty();
+  }
+  if (!is_clear || suffix.size() > kLongest) {
+    suffix = "-" + calc_sha256_hex(all).substr(0, kHashDigits);
+  }
+  return make_run_name(plan) + suffix;
 }
 
 }  // namespace armwright

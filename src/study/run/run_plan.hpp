@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -61,6 +62,11 @@ bool can_race(const OptimizerRow& optimizer, Racing::Kind kind);
 std::string explain_no_race(const OptimizerRow& optimizer, const Racing& racing,
                             const Schedule& schedule);
 
+// Returns why a larger budget does not continue a run of this plan: its evaluations would not be the
+// first ones of a run that had the larger budget from the beginning. Returns an empty text if it
+// continues the run.
+std::string explain_no_continuation(const RunPlan& plan);
+
 // Checks that optimizer, schedule, racing, problem and budget fit together. Throws Error{usage}.
 void check_plan(const RunPlan& plan);
 
@@ -72,5 +78,11 @@ Schedule read_recorded_schedule(const nlohmann::json& schedule);
 
 // Returns the name of the run: "q1-complex-ga-seed1".
 std::string make_run_name(const RunPlan& plan);
+// Returns the name of the run's default folder: the name of the run and, if the user has set anything
+// that changes the result, a suffix that differs for different settings. It has their keys and values,
+// "q1-complex-ga-seed1-engine_ode-population50-fixed10", or eight hexadecimal digits of their SHA-256
+// if that would be long or ambiguous. `settings` are the KEY=VALUE texts that override the problem's.
+// Seed and budget have no part in the suffix.
+std::string make_folder_name(const RunPlan& plan, std::span<const std::string> settings);
 
 }  // namespace armwright

@@ -182,6 +182,9 @@ void check_sizes(const RunResult& result) {
     check_sizes(result, judged.validation);
   }
   check_sizes(result, result.test);
+  if (result.start) {
+    check_sizes(result, result.start->test);
+  }
 }
 
 }  // namespace
@@ -214,6 +217,28 @@ const DecisionVariable* find_discrete(const RunResult& result, std::size_t varia
 
 double get_failure_error(const RunResult& result) {
   return result.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
+}
+
+std::vector<std::string> list_faults(const RunResult& result) {
+  std::vector<std::string> faults;
+  if (!result.winner) {
+    return faults;
+  }
+  const ErrorSummary& winner = result.test_summary;
+  std::string start;
+  if (result.start) {
+    const ErrorSummary summary =
+        summarize(result.start->test.case_errors, get_failure_error(result));
+    start = fmt::format(" (the start: {})", summary.failures);
+  }
+  if (winner.failures > 0) {
+    faults.push_back(fmt::format("the winner fails {} of {} test cases{}", winner.failures,
+                                 winner.cases, start));
+  }
+  if (result.start && !result.start->is_worse_than_winner) {
+    faults.emplace_back("no design better than the start was found");
+  }
+  return faults;
 }
 
 EffortTotals get_effort_totals(const RunResult& result) {
@@ -286,7 +311,8 @@ std::string to_json(const RunResult& result) {
        {{"error_m", optional_to_json(result.published.error_m)},
         {"total_torque_n_m", optional_to_json(result.published.total_torque_n_m)},
         {"design", result.published.design},
-        {"where", result.published.where}}},
+        {"where", result.published.where},
+        {"difference", result.published.difference}}},
   };
   if (result.counts.abandoned > 0) {  // as in results from versions without racing
     j["counts"]["abandoned"] = result.counts.abandoned;
@@ -311,6 +337,18 @@ std::string to_json(const RunResult& result) {
     j["winner"] = {{"candidate", *result.winner},
                    {"test", evaluation_to_json(result.test)},
                    {"test_summary", summary_to_json(result.test_summary)}};
+    const std::vector<std::string> faults = list_faults(result);
+    if (result.start ||
+        !faults.empty()) {  // results of version 1.0 without faults keep their bytes
+      j["winner"]["faults"] = faults;
+    }
+    if (result.start) {
+      const Evaluation& test = result.start->test;
+      j["start"] = {
+          {"test", evaluation_to_json(test)},
+          {"test_summary", summary_to_json(summarize(test.case_errors, get_failure_error(result)))},
+          {"is_worse_than_winner", result.start->is_worse_than_winner}};
+    }
     // Results of version 1.0 have none of these.
     if (result.test_motion) {
       j["winner"]["test_motion"] = motion_to_json(*result.test_motion);
@@ -385,6 +423,7 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
     result.published.total_torque_n_m = optional_from_json(published.at("total_torque_n_m"));
     result.published.design = published.at("design");
     result.published.where = published.at("where");
+    result.published.difference = published.value("difference", std::string());
     if (!j.at("winner").is_null()) {
       result.winner = whole_from_json<std::size_t>(j.at("winner").at("candidate"));
       if (*result.winner >= result.judged.size()) {
@@ -392,6 +431,10 @@ RunResult parse_result(const std::string& text, const std::filesystem::path& fil
       }
       result.test = evaluation_from_json(j.at("winner").at("test"));
       result.test_summary = summarize(result.test.case_errors, get_failure_error(result));
+      if (j.contains("start")) {
+        result.start = JudgedStart{.test = evaluation_from_json(j["start"].at("test")),
+                                   .is_worse_than_winner = j["start"].at("is_worse_than_winner")};
+      }
       if (j.at("winner").contains("test_motion")) {
         result.test_motion = motion_from_json(j["winner"]["test_motion"]);
       }

@@ -35,6 +35,12 @@ struct JudgedCandidate {
   Evaluation validation;
 };
 
+// The problem's start on the cases that the winner was tested on.
+struct JudgedStart {
+  Evaluation test;
+  bool is_worse_than_winner = false;  // by the rule of the winner (winner_selection.hpp)
+};
+
 struct RunResult {
   std::string problem;
   std::string optimizer;
@@ -54,6 +60,8 @@ struct RunResult {
   std::optional<std::size_t> winner;  // index into judged; nothing if none has an objective
   Evaluation test;                    // the winner's on the test set
   ErrorSummary test_summary;
+  // Nothing if there is no winner, in a comparison's cells, in told runs and in identifications.
+  std::optional<JudgedStart> start;
   // The winner's errors in motion on the test set. Nothing in results of version 1.0, of a
   // comparison's cells and of runs without an arm.
   std::optional<MotionSummary> test_motion;
@@ -88,6 +96,10 @@ const DecisionVariable* find_discrete(const RunResult& result, std::size_t varia
 // Returns the error above which a test case has failed: kFailureError_m for an arm, infinity for a
 // function.
 double get_failure_error(const RunResult& result);
+
+// Returns why nobody should use the winner as it is, one sentence each: it fails on the test set, or
+// it is not better than the start. Empty if there is no winner.
+std::vector<std::string> list_faults(const RunResult& result);
 
 // Returns the winner's efforts. Those of version 1.0 count sliding joints as if they turned.
 EffortTotals get_effort_totals(const RunResult& result);

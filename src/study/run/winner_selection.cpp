@@ -8,11 +8,11 @@
 #include <mutex>
 #include <numeric>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include "base/bits.hpp"
 #include "base/error.hpp"
+#include "study/statistics/values.hpp"
 
 namespace armwright {
 namespace {
@@ -197,18 +197,29 @@ class JournalledEvaluation {
 
 }  // namespace
 
+DesignRank calc_rank(const ProblemDescription& problem, const Evaluation& evaluation) {
+  DesignRank rank{.failures = summarize(evaluation.case_errors, problem.failure_error).failures,
+                  .violation = kInfinity,
+                  .objective = kInfinity};
+  if (!evaluation.objectives.empty()) {
+    rank.violation = calc_violation(evaluation.constraint_values);
+    rank.objective = calc_scalar(problem, evaluation.objectives);
+  }
+  return rank;
+}
+
 std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
                                          const std::vector<JudgedCandidate>& judged) {
-  const auto rank = [&](const JudgedCandidate& candidate) {
-    return std::tuple(candidate.validation.failed_cases,
-                      calc_violation(candidate.validation.constraint_values),
-                      calc_scalar(problem, candidate.validation.objectives));
-  };
   std::optional<std::size_t> winner;
+  std::optional<DesignRank> best;
   for (std::size_t i = 0; i < judged.size(); ++i) {
-    if (!judged[i].validation.objectives.empty() &&
-        (!winner || rank(judged[i]) < rank(judged[*winner]))) {
+    if (judged[i].validation.objectives.empty()) {
+      continue;
+    }
+    const DesignRank rank = calc_rank(problem, judged[i].validation);
+    if (!best || rank < *best) {
       winner = i;
+      best = rank;
     }
   }
   return winner;
@@ -217,7 +228,7 @@ std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
 bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
                    const JournalContent& recorded, const RecordedEvaluations& training,
                    CaseExecutor& executor, StopSignal& stop, Journal& journal,
-                   RunObserver& observer, RunResult& result) {
+                   RunObserver& observer, bool judges_start, RunResult& result) {
   const CaseSets& sets = plan.problem.sets;
   JournalledEvaluation evaluation(plan, recorded, training, executor, stop, journal, observer);
   if (plan.selection.evaluated_only) {
@@ -232,17 +243,29 @@ bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     result.judged.push_back({std::move(candidates[i]), std::move((*validated)[i])});
   }
-  result.winner = choose_winner(plan.problem.problem->description(), result.judged);
+  const ProblemDescription& description = plan.problem.problem->description();
+  result.winner = choose_winner(description, result.judged);
   if (!result.winner) {
     return true;
   }
-  auto tested = evaluation.evaluate({result.judged[*result.winner].candidate.x},
-                                    make_block(CaseRole::test, sets.test, sets.test_cases));
+  const std::vector<double>& winner = result.judged[*result.winner].candidate.x;
+  const std::vector<double> start = list_starts(description.variables);
+  std::vector<std::vector<double>> designs_to_test = {winner};
+  if (judges_start && !same_bits(start, winner)) {
+    designs_to_test.push_back(start);
+  }
+  auto tested =
+      evaluation.evaluate(designs_to_test, make_block(CaseRole::test, sets.test, sets.test_cases));
   if (!tested) {
     return false;
   }
-  result.test = std::move(tested->front());
+  result.test = tested->front();
   result.test_summary = summarize(result.test.case_errors, get_failure_error(result));
+  if (judges_start) {
+    const bool is_better =
+        calc_rank(description, result.test) < calc_rank(description, tested->back());
+    result.start = JudgedStart{.test = tested->back(), .is_worse_than_winner = is_better};
+  }
   return true;
 }
 

@@ -4,6 +4,8 @@
 // charged to the budget, and no case is cut off.
 #pragma once
 
+#include <compare>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -14,14 +16,27 @@
 
 namespace armwright {
 
-// Returns the index of the winner: the candidate with the fewest validation cases without a number
-// (Evaluation::failed_cases), then with the smallest violation, then with the smallest objective
-// (of several, the weighted sum). The first of equal ones wins. Returns nothing if no candidate has
-// an objective.
+// The quality of a design on the cases of a block. Smaller is better: fewer failures decide (cases
+// without a number, or with an error above ProblemDescription::failure_error), then the smaller
+// violation of the constraints, then the smaller objective (of several, the weighted sum).
+struct DesignRank {
+  std::uint64_t failures = 0;
+  double violation = 0;
+  double objective = 0;
+
+  auto operator<=>(const DesignRank&) const = default;
+};
+
+// Returns the rank of a design. If no case has a number, violation and objective are infinite.
+DesignRank calc_rank(const ProblemDescription& problem, const Evaluation& evaluation);
+
+// Returns the index of the winner: the candidate with the best rank on the validation set, the first
+// of equal ones. Returns nothing if no candidate has an objective.
 std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
                                          const std::vector<JudgedCandidate>& judged);
 
-// Evaluates the candidates and sets `judged`, `winner`, `test` and `test_summary` of the result.
+// Evaluates the candidates and sets `judged`, `winner`, `test` and `test_summary` of the result, and
+// `start`, if there is a winner and `judges_start`.
 // Takes evaluations from `recorded` where the journal has them, and appends the others to
 // `journal`. `training` holds all training evaluations of the run: if the problem has a single
 // case, they are the judgements of the decision vectors that they have, and only others are
@@ -31,6 +46,6 @@ std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
 bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
                    const JournalContent& recorded, const RecordedEvaluations& training,
                    CaseExecutor& executor, StopSignal& stop, Journal& journal,
-                   RunObserver& observer, RunResult& result);
+                   RunObserver& observer, bool judges_start, RunResult& result);
 
 }  // namespace armwright

@@ -102,6 +102,11 @@ class JournalSurveyor {
     if (!survey_.damage.empty()) {
       ++survey_.damage.back().records_behind;
     }
+    if (std::holds_alternative<ContinueRecord>(record)) {
+      survey_.end.reset();
+      survey_.is_continued = true;
+      return;
+    }
     if (survey_.end) {
       ++survey_.records_behind_end;
     }
@@ -244,6 +249,7 @@ JournalRepair repair_journal(const std::filesystem::path& file, const JournalSur
         const auto* evaluation = std::get_if<EvaluationRecord>(&record);
         const bool is_kept =
             std::holds_alternative<LateRecommendations>(record) ||
+            std::holds_alternative<ContinueRecord>(record) ||
             (evaluation != nullptr &&
              (evaluation->cases.role != CaseRole::training
                   ? !survey.contradictory_judgements.contains(encode_request(*evaluation))

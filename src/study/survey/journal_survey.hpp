@@ -46,7 +46,8 @@ struct JournalSurvey {
   std::uint64_t repeated = 0;  // evaluations recorded again with the same content
   // Evaluations that are recorded with different contents. None of their records is used.
   std::vector<std::uint64_t> contradictory;
-  std::optional<EndRecord> end;
+  std::optional<EndRecord> end;  // nothing if the run has gone on with a larger budget
+  bool is_continued = false;     // it has a ContinueRecord
   std::uint64_t records_behind_end = 0;
 
   // Returns the evaluations that were recorded once and are missing now. If the run has ended, its

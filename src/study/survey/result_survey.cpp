@@ -157,6 +157,7 @@ std::string ResultSurvey::find_difference(const JournalSurvey& journal) const {
   ProblemDescription problem;
   problem.objectives = result_.objectives;
   problem.objective_weights = result_.objective_weights;
+  problem.failure_error = get_failure_error(result_);
   if (choose_winner(problem, result_.judged) != result_.winner) {
     return "its winner is not the best of the judged designs";
   }

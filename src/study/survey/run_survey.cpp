@@ -366,7 +366,15 @@ class RunSurveyor {
       add_damaged_file(kChecksumFile,
                        "it is missing; the command that began the run writes it again");
     } else if (found.is_there && has_manifest && !found.lines.contains("manifest.json")) {
-      add_damaged_file(kChecksumFile, "it does not list manifest.json");
+      // A kill while a larger budget is recorded leaves the new manifest without its line.
+      if (survey_.journal && survey_.journal->is_continued) {
+        add(Finding::Kind::note, kChecksumFile,
+            "it does not list manifest.json, because a kill has interrupted the start with a "
+            "larger "
+            "budget; it does so when the run ends");
+      } else {
+        add_damaged_file(kChecksumFile, "it does not list manifest.json");
+      }
     } else if (!found.uncovered.empty() && survey_.writer.empty()) {
       add(Finding::Kind::note, kChecksumFile,
           fmt::format("{}, so nothing covers {}",

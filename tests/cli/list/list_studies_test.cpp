@@ -56,7 +56,7 @@ TEST(ListStudies, TheNextCommandHasTheProgramsNameAsTyped) {
 TEST(ListStudies, OtherStudiesAreListedAsAWhole) {
   const TemporaryFolder folder;
   EXPECT_THAT(make_study_kind().explain(write_study(folder, "sphere"), Style(false)),
-              AllOf(HasSubstr("16 cells"), Not(HasSubstr("starts no program"))));
+              AllOf(HasSubstr("20 cells"), Not(HasSubstr("starts no program"))));
 }
 
 }  // namespace

@@ -41,18 +41,18 @@ TEST(DescribeStudy, ShowsTheBestWinnerByTheProgramsNameAsTyped) {
 
 TEST(DescribePower, SaysWhichDifferenceTheStudyCanShow) {
   const std::string text = describe_power(make_plan(15));
-  EXPECT_THAT(text, HasSubstr("With 15 replicates and 6 pairs of optimizers per problem"));
-  EXPECT_THAT(text, HasSubstr(fmt::format("A12 = {:.2f} on", find_detectable_a12(15, 6))));
+  EXPECT_THAT(text, HasSubstr("With 15 replicates and 10 pairs of optimizers per problem"));
+  EXPECT_THAT(text, HasSubstr(fmt::format("A12 = {:.2f} on", find_detectable_a12(15, 10))));
   EXPECT_THAT(text, HasSubstr("A medium difference (A12 = 0.64)"));
-  EXPECT_THAT(text, HasSubstr(fmt::format("{} replicates find it", find_needed_pairs(0.64, 6))));
+  EXPECT_THAT(text, HasSubstr(fmt::format("{} replicates find it", find_needed_pairs(0.64, 10))));
   EXPECT_THAT(text, Not(HasSubstr("warning")));
 }
 
 TEST(DescribePower, WarnsIfNoOutcomeCanBeSignificant) {
   EXPECT_THAT(describe_power(make_plan(7)),
-              HasSubstr("warning: with 7 replicates and 6 pairs of optimizers per problem no "
+              HasSubstr("warning: with 7 replicates and 10 pairs of optimizers per problem no "
                         "difference, however clear, is significant after Holm's correction.\n"
-                        "8 replicates are the fewest that can decide a pair"));
+                        "9 replicates are the fewest that can decide a pair"));
 }
 
 TEST(DescribePower, IsEmptyForOneOptimizer) {

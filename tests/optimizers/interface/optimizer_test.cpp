@@ -76,7 +76,7 @@ TEST(Options, DuplicatesAreRefused) {
 }
 
 TEST(Options, WrongTypesAndRangesAreRefused) {
-  for (const char* text : {"1", "101", "3.5", "3 ", "", "1e1", "99999999999999999999"}) {
+  for (const char* text : {"1", "101", "3.5", "3 ", "", "1e-1", "99999999999999999999"}) {
     EXPECT_EQ(refusal_of(std::string("size=") + text),
               "optimizer 'demo': option 'size' is '" + std::string(text) +
                   "'; it must be an integer between 2 and 100");
@@ -115,8 +115,25 @@ TEST(OptimizerTable, HoldsTheBuiltInOptimizers) {
   EXPECT_THAT(optimizer_names(), testing::IsSupersetOf({"ga", "random"}));
   EXPECT_EQ(find_optimizer("random").name, "random");
   EXPECT_THAT(usage_error_of([] { find_optimizer("gaa"); }),
-              testing::StartsWith(
-                  "unknown optimizer 'gaa'; did you mean 'ga'? Valid: auto, ga, ga:simple, "));
+              testing::MatchesRegex("unknown optimizer 'gaa'; did you mean 'ga'\\? Valid: ga, .* "
+                                    "more, which 'armwright list optimizers' lists"));
+  for (const auto& [typed, name] : {std::pair{"CMA-ES", "cmaes"},
+                                    {"Nelder-Mead", "nlopt:neldermead"},
+                                    {"NLOPT:Cobyla", "nlopt:cobyla"},
+                                    {"NSGA-2", "pagmo:nsga2"},
+                                    {"BOBYQA", "nlopt:bobyqa"}}) {
+    EXPECT_THAT(usage_error_of([&] { find_optimizer(typed); }),
+                testing::HasSubstr("did you mean '" + std::string(name) + "'?"));
+  }
+}
+
+TEST(OptimizerTable, AProgramOfTheUserNeedsExec) {
+  for (const char* name : {"mine.py", "./mine.py", "python3 mine.py", "python3"}) {
+    EXPECT_EQ(usage_error_of([&] { load_optimizer(name); }),
+              std::string("unknown optimizer '") + name +
+                  "'; a program of your own needs exec: before its command, as in --optimizer "
+                  "\"exec:python3 mine.py\"");
+  }
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ TEST(AutoProbe, TellsRuggedFromSmoothWithAtMostATwentiethOfTheBudget) {
   const auto probe = [](const char* name, std::uint64_t seed, std::int64_t budget) {
     const auto problem = make_analytic(name);
     MemoryEvaluator evaluator(*problem, {.budget = budget});
-    const bool answer = is_rugged(evaluator, seed);
+    const bool answer = is_rugged(evaluator, seed, evaluator.remaining());
     EXPECT_LE(20 * evaluator.charged(), budget);
     EXPECT_LE(evaluator.batch_sizes().size(), 1u);
     return answer;

@@ -20,6 +20,10 @@ constexpr const char* kTaskKeys =
     "limits, floor_m, orientation, tool_rpy_rad, tool_axis, orientation_arm_m, home, "
     "self_clearance, clearance_m";
 
+std::string list_keys(const std::string& typed, const char* keys) {
+  return list_near(typed, keys, "armwright list settings");
+}
+
 struct Mistake {
   std::string text;     // behind `extends = "base"`, from line 2 on
   std::string message;  // behind "p.toml:"
@@ -52,7 +56,7 @@ const std::vector<Mistake> kTask = {
     {"[task]\nspeed_m_per_s = -inf", "3: task.speed_m_per_s is -inf; it must be a finite number"},
     {"[task]\nspeed = 2",
      std::string("3: unknown key task.speed; did you mean 'task.speed_m_per_s'? Valid here: ") +
-         kTaskKeys},
+         list_keys("speed_m_per_s", kTaskKeys)},
     {"[task]\ndistance_limit_m = -0.1",
      "3: task.distance_limit_m is -0.1; it must be a finite number >= 0 and <= 100"},
     {"[task]\ntrapezoid_acceleration_m_per_s2 = 0",
@@ -106,7 +110,7 @@ const std::vector<Mistake> kControl = {
     {"[control]\ncontroller = 'pidd'",
      "3: unknown control.controller 'pidd'; did you mean 'pid'? "
      "Valid: " +
-         join(controller_names(), ", ")},
+         list_valid("pidd", controller_names(), "armwright list settings control.controller")},
     {"[control]\nperiod = 0.01",
      "3: unknown key control.period; did you mean 'control.period_s'? Valid here: period_s, "
      "start, interface, bandwidth_hz, delay_s, resolution_rad, resolution_m, controller"},
@@ -183,7 +187,9 @@ const std::vector<Mistake> kObjective = {
      "3: training.cutoff_error_m is 0.01; it must be a finite number >= 0.1 and <= 1000000"},
     {"[training]\ncutoff = 2",
      "3: unknown key training.cutoff; did you mean 'training.cutoff_error_m'? Valid here: "
-     "cutoff_error_m"},
+     "cutoff_error_m, failure_rule"},
+    {"[training]\nfailure_rule = 'order'",
+     "3: unknown training.failure_rule 'order'; did you mean 'ordered'? Valid: ordered, thesis"},
 };
 INSTANTIATE_TEST_SUITE_P(Objective, BadSection, testing::ValuesIn(kObjective));
 
@@ -217,8 +223,8 @@ const std::vector<Mistake> kSets = {
      "4: unknown key racing.margin. Valid here: kind, first_cases, eta"},
     {"[schedule]\ncases = 0", "3: schedule.cases is 0; it must be an integer from 1 to 1000000"},
     {"[run]\nbudget = -1", "3: run.budget is -1; it must be an integer from 0 to 1000000000000"},
-    {"[run]\nbudget = 1e4",
-     "3: run.budget is 1e4, a floating-point number; it must be an integer from 0 to "
+    {"[run]\nbudget = 1.5",
+     "3: run.budget is 1.5, a floating-point number; it must be an integer from 0 to "
      "1000000000000"},
     {"[run]\noptimizer = 3", "3: run.optimizer is 3, an integer; it must be a string"},
     {"[run]\nseed = 3", "3: unknown key run.seed. Valid here: optimizer, budget"},
@@ -229,11 +235,10 @@ const std::vector<Mistake> kVariables = {
     {"[variables]\nstart = 'table-b1'",
      std::string("3: variables.start is 'table-b1'; unknown design 'table-b1'; did you mean "
                  "'table-a1'? Valid: ") +
-         kShippedDesigns + " (or the path of a .toml file)"},
+         list_designs("table-b1") + " (or the path of a .toml file)"},
     {"[variables]\noptimize = ['p', 'effort']",
-     "3: variables.optimize is ['p', 'effort']; unknown design parameter 'effort'. Valid: gains, "
-     "p, "
-     "i, d, effort_min, effort_max, length_scale, section_scale, "
+     "3: variables.optimize is ['p', 'effort']; unknown design parameter 'effort'; did you mean "
+     "'effort_min'? Valid: gains, p, i, d, effort_min, effort_max, length_scale, section_scale, "
      "tube_diameter, tube_wall"},
     {"[variables]\noptimize = ['effort_mn']",
      "3: variables.optimize is ['effort_mn']; unknown design parameter 'effort_mn'; did you mean "
@@ -283,10 +288,10 @@ const std::vector<Mistake> kOther = {
     {"[published]\nerror_m = 0", "3: published.error_m is 0; it must be a finite number > 0"},
     {"[published]\ntotal_torque = 3",
      "3: unknown key published.total_torque; did you mean 'published.total_torque_n_m'? Valid "
-     "here: error_m, total_torque_n_m, design, where"},
+     "here: error_m, total_torque_n_m, design, where, set"},
     {"[published]\ndesign = 'q1-complex'",
      std::string("3: published.design is 'q1-complex'; unknown design 'q1-complex'. Valid: ") +
-         kShippedDesigns + " (or the path of a .toml file)"},
+         list_designs("q1-complex") + " (or the path of a .toml file)"},
     {"[sweep]\nvalues = [1]\ndesign = 'table-a10'",
      "2: sweep.parameter is missing; it must be a string"},
     {"[sweep]\nparameter = 'task.load_kg'\nvalues = []\ndesign = 'table-a10'",
@@ -296,8 +301,9 @@ const std::vector<Mistake> kOther = {
     {"[sweep]\nparameter = 'task.load_kg'\nvalues = [1]\ndesign = 'tabl-a5'",
      std::string("5: sweep.design is 'tabl-a5'; unknown design 'tabl-a5'; did you mean "
                  "'table-a5'? Valid: ") +
-         kShippedDesigns + " (or the path of a .toml file)"},
-    {"colour = 'red'", std::string("2: unknown key colour. Valid here: ") + kTopKeys},
+         list_designs("tabl-a5") + " (or the path of a .toml file)"},
+    {"colour = 'red'",
+     std::string("2: unknown key colour. Valid here: ") + list_keys("colour", kTopKeys)},
     {"title = 3", "2: title is 3, an integer; it must be a string"},
 };
 INSTANTIATE_TEST_SUITE_P(Other, BadSection, testing::ValuesIn(kOther));
@@ -316,14 +322,16 @@ TEST(BadWorkspace, ThatMakesNoCasesIsRefusedWhenItIsRead) {
 TEST(BadConfig, EveryUnknownKeyIsNamedAtOnce) {
   EXPECT_EQ(ProblemFolder().refusal_of_base_with(
                 "colour = 'red'\n[task]\nspeed = 1\n[robot]\nurdf = 'irb4600_40_255'\nurl = 'x'"),
-            std::string("p.toml:2: unknown key colour. Valid here: ") + kTopKeys +
+            std::string("p.toml:2: unknown key colour. Valid here: ") +
+                list_keys("colour", kTopKeys) +
                 "\np.toml:4: unknown key task.speed; did you mean 'task.speed_m_per_s'? Valid "
                 "here: " +
-                kTaskKeys +
-                "\np.toml:7: unknown key robot.url. Valid here: urdf, mass_scale, base, "
-                "tip, density_kg_per_m3, dynamics, repair, mass_from_shapes, packages, plant, "
-                "friction_scale, armature_scale, "
-                "stiffness_scale, armature_share, elastic_hz, propose");
+                list_keys("speed_m_per_s", kTaskKeys) +
+                "\np.toml:7: unknown key robot.url. Valid here: " +
+                list_keys("url",
+                          "urdf, mass_scale, base, tip, density_kg_per_m3, dynamics, repair, "
+                          "mass_from_shapes, packages, plant, friction_scale, armature_scale, "
+                          "stiffness_scale, armature_share, elastic_hz, propose"));
 }
 
 TEST(BadConfig, WhatIsMissingIsNamed) {
@@ -368,9 +376,12 @@ TEST(BadConfig, TextThatIsNoTomlIsRefusedAtItsLine) {
 TEST(BadConfig, AnalyticFunctionsAreCheckedToo) {
   const ProblemFolder folder;
   EXPECT_EQ(folder.refusal_of("kind = 'analytic'\n[function]\nname = 'spere'"),
-            "p.toml:3: unknown function.name 'spere'; did you mean 'sphere'? Valid: sphere, "
-            "ellipsoid, rosenbrock, rastrigin, ackley, branin, hartmann6, constrained, sphere-int, "
-            "ellipsoid-int, zdt1, dtlz2, bbob-f1, bbob-f2, bbob-f3, bbob-f8, bbob-f10, bbob-f15");
+            "p.toml:3: unknown function.name 'spere'; did you mean 'sphere'? Valid: " +
+                list_near("spere",
+                          "sphere, ellipsoid, rosenbrock, rastrigin, ackley, branin, hartmann6, "
+                          "constrained, sphere-int, ellipsoid-int, zdt1, dtlz2, bbob-f1, bbob-f2, "
+                          "bbob-f3, bbob-f8, bbob-f10, bbob-f15",
+                          "armwright list settings function.name"));
   EXPECT_EQ(folder.refusal_of("kind = 'analytic'\n[function]\nname = 'rosenbrock'\ndimension = 1"),
             "p.toml:4: function.dimension is 1; it must be an integer from 2 to 1000");
   EXPECT_EQ(folder.refusal_of(
@@ -390,11 +401,11 @@ TEST(BadConfig, OverridesAreNamedAsSuch) {
       {"task.sped_m_per_s=2",
        std::string("--set task.sped_m_per_s=2: unknown key task.sped_m_per_s; did you mean "
                    "'task.speed_m_per_s'? Valid here: ") +
-           kTaskKeys},
+           list_keys("speed_m_per_s", kTaskKeys)},
       {"tsk.speed_m_per_s=2",
        std::string(
            "--set tsk.speed_m_per_s=2: unknown key tsk; did you mean 'task'? Valid here: ") +
-           kTopKeys},
+           list_keys("task", kTopKeys)},
       {"task.speed_m_per_s=0",
        "--set task.speed_m_per_s=0: task.speed_m_per_s is 0; it must be a finite number >= 0.0001 "
        "and <= 100"},

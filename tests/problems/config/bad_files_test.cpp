@@ -14,7 +14,8 @@ constexpr const char* kProblems =
     "branin, chaiyaratana-line, co-design, constrained, dtlz2, ellipsoid, ellipsoid-int, excite, "
     "faithful-e6, "
     "faithful-q1, faithful-q3, gasparetto, gasparetto-front, hartmann6, identify, initial, "
-    "initial-0cm, initial-45cm, initial-90cm, q1-complex, q1-ramp, q1-requirements, q1-step, "
+    "initial-0cm, initial-45cm, initial-90cm, irb4600, q1-complex, q1-ramp, q1-requirements, "
+    "q1-step, "
     "q1-trapezoid, q1-triangular, q2-e1, q2-e2, q2-e3, q2-e4, q2-e5, q2-e6, q2-energy, "
     "q2-error, q2-pareto, q2-torque, q3-load, q4-speed, rastrigin, robot, robust-e6, "
     "robust-q1, robust-q3, rosenbrock, saravanan-puma, shiakolas, sphere, sphere-int, "
@@ -28,26 +29,43 @@ std::string design_refusal(const std::string& name) {
   return usage_error_of([&] { load_design(name); });
 }
 
-TEST(BadName, UnknownProblemListsTheValidOnes) {
-  EXPECT_EQ(problem_refusal("q1-complx"),
-            std::string("unknown problem 'q1-complx'; did you mean 'q1-complex'? Valid: ") +
-                kProblems + kOrPath);
-  EXPECT_EQ(problem_refusal("walking"),
-            std::string("unknown problem 'walking'. Valid: ") + kProblems + kOrPath);
-  EXPECT_EQ(problem_refusal(""), std::string("unknown problem ''. Valid: ") + kProblems + kOrPath);
-  // What is only there to be extended is no problem.
-  EXPECT_EQ(problem_refusal("_thesis"),
-            std::string("unknown problem '_thesis'. Valid: ") + kProblems + kOrPath);
-  EXPECT_EQ(problem_refusal("q1\x1b[31m"),
-            std::string("unknown problem 'q1?[31m'. Valid: ") + kProblems + kOrPath);
+std::string list_nearest_problems(const std::string& typed) {
+  return list_near(typed, kProblems, "armwright list problems");
 }
 
-TEST(BadName, UnknownDesignListsTheValidOnes) {
+TEST(BadName, UnknownProblemNamesTheNearestOnes) {
+  EXPECT_EQ(problem_refusal("q1-complx"),
+            "unknown problem 'q1-complx'; did you mean 'q1-complex'? Valid: " +
+                list_nearest_problems("q1-complx") + kOrPath);
+  EXPECT_THAT(list_nearest_problems("q1-complx"),
+              testing::AllOf(testing::StartsWith("q1-complex, "),
+                             testing::EndsWith(" more, which 'armwright list problems' lists")));
+  EXPECT_EQ(problem_refusal("walking"),
+            "unknown problem 'walking'. Valid: " + list_nearest_problems("walking") + kOrPath);
+  EXPECT_EQ(problem_refusal(""),
+            "unknown problem ''. Valid: " + list_nearest_problems("") + kOrPath);
+  // What is only there to be extended is no problem.
+  EXPECT_EQ(problem_refusal("_thesis"),
+            "unknown problem '_thesis'. Valid: " + list_nearest_problems("_thesis") + kOrPath);
+  EXPECT_EQ(problem_refusal("q1\x1b[31m"),
+            "unknown problem 'q1?[31m'. Valid: " + list_nearest_problems("q1\x1b[31m") + kOrPath);
+}
+
+TEST(BadName, UnknownDesignNamesTheNearestOnes) {
   EXPECT_EQ(design_refusal("tabel-a5"),
-            std::string("unknown design 'tabel-a5'; did you mean 'table-a5'? Valid: ") +
-                kShippedDesigns + kOrPath);
+            "unknown design 'tabel-a5'; did you mean 'table-a5'? Valid: " +
+                list_designs("tabel-a5") + kOrPath);
   EXPECT_EQ(design_refusal("q1-complex"),
-            std::string("unknown design 'q1-complex'. Valid: ") + kShippedDesigns + kOrPath);
+            "unknown design 'q1-complex'. Valid: " + list_designs("q1-complex") + kOrPath);
+}
+
+TEST(BadName, AProgramOfTheUserNeedsExec) {
+  for (const char* name : {"mine.py", "./mine.py", "python3 mine.py", "python3"}) {
+    EXPECT_EQ(problem_refusal(name),
+              std::string("unknown problem '") + name +
+                  "'; a program of your own needs exec: before its command, as in \"exec:python3 "
+                  "mine.py\"");
+  }
 }
 
 TEST(BadName, UnknownRobotIsNamedWhereTheProblemNamesIt) {
@@ -66,9 +84,9 @@ TEST(BadPath, SaysWhereItWasLookedFor) {
   EXPECT_EQ(problem_refusal("q1-complx.toml"),
             "there is no file 'q1-complx.toml' in the current folder, and no shipped problem has "
             "that name; did you mean 'q1-complex'?");
-  EXPECT_EQ(problem_refusal("python3 mine/mine.py"),
-            "there is no file 'python3 mine/mine.py' in the current folder; the name of a program "
-            "begins with exec:, as in 'exec:python3 mine/mine.py'");
+  EXPECT_EQ(problem_refusal("./solve --fast"),
+            "there is no file './solve --fast' in the current folder; the name of a program begins "
+            "with exec:, as in 'exec:./solve --fast'");
   EXPECT_EQ(design_refusal("no-such-folder/d.toml"),
             "there is no file 'no-such-folder/d.toml' in the current folder");
   EXPECT_EQ(folder.shorten(problem_refusal(folder.path("q1.toml"))), "there is no file 'q1.toml'");
@@ -126,7 +144,8 @@ TEST(NamedFile, OfAPlantIsNoRobot) {
   const ProblemFolder folder;
   EXPECT_THAT(folder.refusal_of_base_with("[robot]\nplant = 'arm7'\n"),
               testing::HasSubstr("p.toml:3: robot.plant is 'arm7'; unknown plant 'arm7'. Valid: "
-                                 "kr300.plant, puma560.plant, subudhi_flexible.plant "
+                                 "irb4600_geared.plant, kr300.plant, puma560.plant, "
+                                 "subudhi_flexible.plant "
                                  "(or the path of a .toml file)"));
   EXPECT_THAT(folder.refusal_of_base_with("[robot]\nurdf = 'mine.toml'\n"),
               testing::HasSubstr("p.toml:3: robot.urdf is 'mine.toml'; unknown robot 'mine.toml'"));
@@ -143,7 +162,7 @@ TEST(BadExtends, NamesTheChain) {
             "q.toml -> p.toml");
   EXPECT_THAT(folder.refusal_of("extends = \"bse\""),
               testing::StartsWith("p.toml:1: unknown file to extend 'bse'; did you mean 'base'? "
-                                  "Valid: base, q, _analytic, "));
+                                  "Valid: base, q, "));
 }
 
 TEST(BadExtends, MistakeInTheExtendedFileIsNamedThere) {

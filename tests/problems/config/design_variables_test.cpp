@@ -26,6 +26,16 @@ const std::string kMotors = "motors.torque_per_mass_n_m_per_kg=100";
 
 const CaseBlock kTraining{CaseRole::training, "train/1", {0, 1}};
 
+TEST(DesignVariables, SayWhichSettingWidensTheirBounds) {
+  const auto problem = load_tracking(
+      "q1-complex", {R"(variables.optimize=["p", "section_scale", "length_scale"])", kSpeed});
+  const auto& variables = problem->description().variables;
+  EXPECT_EQ(variables[0].upper_widening, "--set variables.bounds_factor=1000 (it is 100)");
+  EXPECT_EQ(variables[1].lower_widening, "--set variables.length_bounds_factor=3 (it is 1.5)");
+  EXPECT_EQ(variables[2].upper_widening, "--set variables.section_bounds_factor=4 (it is 2)");
+  EXPECT_EQ(variables[12].lower_widening, "--set variables.speed_bounds_factor=4 (it is 2)");
+}
+
 TEST(DesignVariables, HaveNamesUnitsAndSpansOfTheirOwn) {
   const auto problem =
       load_tracking("q1-complex", {R"(variables.optimize=["p", "section_scale", "length_scale"])",
@@ -202,8 +212,8 @@ TEST(DesignedArm, OutOfReachIsAsBadAsCutOffInTrainingAndNoNumberElsewhere) {
   const Evaluation training = problem->evaluate(x, kTraining);
   EXPECT_EQ(training.status, EvaluationStatus::unreachable);
   EXPECT_THAT(training.reason, HasSubstr("is out of reach: the wrist would be"));
-  EXPECT_THAT(training.case_errors, ElementsAre(1, 1));
-  EXPECT_THAT(training.objectives, ElementsAre(1));
+  EXPECT_THAT(training.case_errors, ElementsAre(2, 2));
+  EXPECT_THAT(training.objectives, ElementsAre(2));
   EXPECT_EQ(training.metrics.at(2), 2);  // failures
   const CaseBlock test{CaseRole::test, "test/2", {0, 1}};
   const Evaluation judged = problem->evaluate(x, test);

@@ -38,10 +38,13 @@ TEST(ShippedDesigns, HaveTheTotalTorqueOfTheThesis) {
   EXPECT_EQ(calc_total_effort(load_design("table-a1").design), 85200);
 }
 
+constexpr const char* kStartOfIrb4600 = "irb4600-start";
+
 std::vector<std::string> list_designs(bool of_the_thesis) {
   std::vector<std::string> names = list_configs("designs");
-  std::erase_if(
-      names, [&](const std::string& name) { return name.starts_with("table-") != of_the_thesis; });
+  std::erase_if(names, [&](const std::string& name) {
+    return name == kStartOfIrb4600 || name.starts_with("table-") != of_the_thesis;
+  });
   return names;
 }
 
@@ -81,6 +84,28 @@ TEST(ShippedDesigns, OfOurOwnAreThoseOfTheReferenceStudy) {
     made += file.path().extension() == ".toml" ? 1 : 0;
   }
   EXPECT_EQ(list_designs(false).size(), made);
+}
+
+// As its file says: the gains are rounded to three digits. The effort limits are twice the peak, where
+// a proposal leaves more room below those of the URDF.
+TEST(ShippedDesigns, TheStartOfIrb4600IsProposedForItsPlant) {
+  const LoadedProblem proposed = load_problem(
+      "irb4600", std::vector<std::string>{"variables.start=proposed", "task.load_kg=40",
+                                          "variables.start_bandwidth_rad_per_s=66.7"});
+  const ArmDesign& expected = proposed.tracking()->config().start;
+  const ArmDesign own = load_design(kStartOfIrb4600).design;
+  const ArmDesign start = load_problem("irb4600").tracking()->config().start;
+  ASSERT_EQ(own.joints.size(), expected.joints.size());
+  for (std::size_t i = 0; i < own.joints.size(); ++i) {
+    SCOPED_TRACE(i);
+    ASSERT_THAT(own.joints[i].gains, SizeIs(3));
+    EXPECT_EQ(start.joints[i].gains, own.joints[i].gains);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double gain = expected.joints[i].gains[k];
+      EXPECT_NEAR(own.joints[i].gains[k], gain, 0.005 * gain);
+    }
+    EXPECT_LT(own.joints[i].limits.max, expected.joints[i].limits.max);
+  }
 }
 
 TEST(ShippedDesigns, PublishedResultsNameProblemsThatLoad) {

@@ -51,8 +51,9 @@ class TrackingOracle : public testing::TestWithParam<OracleDesign> {
 TEST_P(TrackingOracle, ShippedProblemGivesTheSameErrorAtEveryPoint) {
   const TestSet cases = TestSet::load(kOracle);
   ASSERT_EQ(cases.size(), 3U);
-  const LoadedProblem loaded = load_problem(GetParam().problem);
-  const ArmDesign design = load_design(GetParam().name).design;
+  const DesignFile file = load_design(GetParam().name);
+  const LoadedProblem loaded = load_problem(GetParam().problem, file.published.front().overrides);
+  const ArmDesign& design = file.design;
   const auto expected = find_results(GetParam().label);
   ASSERT_EQ(expected.size(), 3U);
   for (const nlohmann::json& result : expected) {
@@ -85,10 +86,11 @@ TEST_P(TrackingOracle, OverridesMakeTheSameTaskOfAnotherProblem) {
       fmt::format("task.signal={}", expected.at("signal").get<std::string>()),
       fmt::format("task.distance_limit_m={}", expected.at("distance_limit_m").get<double>()),
       fmt::format("task.ik_bug={}", expected.at("ik_bug").get<bool>()),
-      fmt::format("task.load_kg={}", expected.at("load_kg").get<double>())};
+      fmt::format("task.load_kg={}", expected.at("load_kg").get<double>()), "physics.engine=ode"};
+  const DesignFile file = load_design(GetParam().name);
+  const ArmDesign& design = file.design;
   const auto made = load_tracking(other, overrides);
-  const auto shipped = load_tracking(GetParam().problem);
-  const ArmDesign design = load_design(GetParam().name).design;
+  const auto shipped = load_tracking(GetParam().problem, file.published.front().overrides);
   const TestSet cases = TestSet::load(kOracle);
   EXPECT_EQ(made->track(design, cases, 0).point_error_m,
             shipped->track(design, cases, 0).point_error_m);

@@ -136,5 +136,26 @@ TEST(Health, DistanceToABoundIsAShareOfTheScaledRange) {
   EXPECT_FALSE(calc_bound_distance(variable, -1000));
 }
 
+TEST(Health, PlacesAreSortedByTheirDistanceToABound) {
+  const std::vector<DecisionVariable> variables = {
+      {.name = "middle", .unit = "", .lower = 0, .upper = 10},
+      {.name = "near", .unit = "", .lower = 0, .upper = 10},
+      {.name = "fixed", .unit = "", .lower = 1, .upper = 1},
+      {.name = "word",
+       .unit = "",
+       .upper = 2,
+       .type = VariableType::category,
+       .choices = {"a", "b", "c"}},
+      {.name = "flag", .unit = "", .upper = 1, .type = VariableType::integer},
+      {.name = "count", .unit = "", .upper = 9, .type = VariableType::integer}};
+  const auto places = list_bound_places(variables, std::vector<double>{5, 9.9, 1, 2, 1, 9});
+  ASSERT_EQ(places.size(), 3);
+  EXPECT_EQ(places[0].variable, 5);
+  EXPECT_EQ(places[0].to.distance, 0);
+  EXPECT_EQ(places[1].variable, 1);
+  EXPECT_TRUE(places[1].to.is_upper);
+  EXPECT_EQ(places[2].variable, 0);
+}
+
 }  // namespace
 }  // namespace armwright

@@ -80,7 +80,9 @@ TEST_F(ReproductionPageTest, HasAllKeysAndWhatWasComputed) {
   EXPECT_EQ(row["label"], "A.5");
   EXPECT_EQ(row["published_error_m"], *record.results.at("A.5").part.published_error_m);
   EXPECT_EQ(row["mean_m"], *record.results.at("A.5").calc_summary().mean);
-  EXPECT_EQ(row["command"], "armwright evaluate table-a5 --problem q1-complex --cases 2");
+  EXPECT_EQ(row["command"],
+            "armwright evaluate table-a5 --problem q1-complex --set task.ik_bug=true --set "
+            "physics.engine=ode --cases 2");
   EXPECT_EQ(row["standard_error_m"],
             calc_mean_and_error(record.results.at("A.5").case_errors).standard_error);
   EXPECT_EQ(row["reason"], "");

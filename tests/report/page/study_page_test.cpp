@@ -254,10 +254,10 @@ TEST_F(StudyPage, OfAStudyUnderWayShowsWhatIsThere) {
   }
   const json page = make("study");
   EXPECT_FALSE(page["finished"]);
-  EXPECT_EQ(page["progress"], (json{{"done", 41}, {"total", 48}, {"unit", "cells"}}));
+  EXPECT_EQ(page["progress"], (json{{"done", 53}, {"total", 60}, {"unit", "cells"}}));
   const auto verdict = page["verdict"].get<std::vector<std::string>>();
   EXPECT_THAT(verdict, Contains(HasSubstr("On rosenbrock at 120 simulations there is no verdict")));
-  EXPECT_THAT(verdict, Contains("7 of 48 cells have not ended and are left out."));
+  EXPECT_THAT(verdict, Contains("7 of 60 cells have not ended and are left out."));
   const json& problem = page["problems"][1];
   EXPECT_EQ(problem["missing"], 7);
   EXPECT_THAT(problem["pairs"], IsEmpty());

@@ -197,6 +197,8 @@ TEST(ElbowUp, SaysHowFarAnUnreachableTargetIs) {
             "target (5, 0, 0.36) m is out of reach: the wrist would be 4.825 m from the shoulder, "
             "possible is 0.187 to "
             "2.377 m");
+  EXPECT_THAT(kinematics.describe_unreachable({900, 0, 500}),
+              testing::EndsWith(" m; were millimetres meant? All lengths are in metres"));
   EXPECT_FALSE(kinematics.solve({0.2, 0, 0.36}, q)) << "too near";
   EXPECT_THAT(kinematics.describe_unreachable({0.2, 0, 0.36}),
               HasSubstr("the wrist would be 0.025 m"));

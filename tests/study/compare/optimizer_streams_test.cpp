@@ -48,7 +48,8 @@ StudyPlan load(const std::filesystem::path& file) {
 StudyPlan make_grown_plan() {
   StudyRequest request;
   request.problems = {"sphere", "rosenbrock"};
-  request.optimizers = {"ga", "cmaes"};
+  request.optimizers = {"ga", "cmaes", "random", "nlopt:neldermead"};
+  request.baselines = false;  // those of 1.0 lack the start
   request.replicates = 8;
   request.budget = 600;
   StudyPlan plan = make_study_plan(request);

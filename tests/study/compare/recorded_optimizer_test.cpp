@@ -40,12 +40,12 @@ class ForeignOptimizerTest : public StudyTest {};
 TEST_F(ForeignOptimizerTest, StandsInAStudyThatIsReadWithoutIt) {
   const StudyPlan plan = make_study_plan(make_its_request());
   // It is a local search itself, so no other local search is added as a baseline.
-  ASSERT_EQ(plan.optimizers.size(), 3U);
+  ASSERT_EQ(plan.optimizers.size(), 4U);
   EXPECT_EQ(run_all(plan, "mine", 2), 0U);
 
   const StudyPlan recorded = load_study_plan(temporary_ / "mine");
   EXPECT_EQ(to_toml(recorded), to_toml(plan));
-  ASSERT_EQ(recorded.optimizers.size(), 3U);
+  ASSERT_EQ(recorded.optimizers.size(), 4U);
   EXPECT_EQ(recorded.optimizers[0].row.name, "python:mine");
   EXPECT_EQ(recorded.optimizers[0].parsed.get_number("step"), 0.5);
   EXPECT_TRUE(recorded.optimizers[0].row.capabilities.local);

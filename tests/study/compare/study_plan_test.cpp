@@ -47,9 +47,9 @@ TEST(StudyFile, AnErrorOfAProblemOrOptimizerNamesItsPlace) {
 TEST(StudyPlan, BaselinesTakePartUnlessAskedNotTo) {
   StudyRequest request = make_small_request();
   EXPECT_THAT(get_labels(make_study_plan(request)),
-              ElementsAre("ga", "cmaes", "random", "nlopt:neldermead"));
+              ElementsAre("ga", "cmaes", "start", "random", "nlopt:neldermead"));
   request.optimizers = {"random", "nlopt:cobyla"};  // one baseline itself, and another local search
-  EXPECT_THAT(get_labels(make_study_plan(request)), ElementsAre("random", "nlopt:cobyla"));
+  EXPECT_THAT(get_labels(make_study_plan(request)), ElementsAre("random", "nlopt:cobyla", "start"));
   request.baselines = false;
   request.optimizers = {"ga"};
   EXPECT_THAT(get_labels(make_study_plan(request)), ElementsAre("ga"));
@@ -112,7 +112,7 @@ TEST(StudyPlan, FreshCasesAreForOptimizersWithGenerationsOnly) {
   EXPECT_THAT(
       usage_error_of([&] { make_study_plan(request); }),
       HasSubstr("only optimizers with generations can be compared on it, and these have none: "
-                "random, nlopt:neldermead"));
+                "start, random, nlopt:neldermead"));
   request.baselines = false;
   EXPECT_TRUE(make_study_plan(request).problems.front().schedule.changes_cases());
 }

@@ -215,7 +215,7 @@ value = 1.0
 label = "nowhere"
 value = -1.0
 )");
-  EXPECT_EQ(analyze_study(plan, temporary_ / "study").missing.size(), 48u);  // they lack choices
+  EXPECT_EQ(analyze_study(plan, temporary_ / "study").missing.size(), 60u);  // they lack choices
   const StudyResult result = study(plan, "study");
   study(plan, "at-once");
   EXPECT_EQ(read_tree(temporary_ / "study" / "tables"),

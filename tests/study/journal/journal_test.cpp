@@ -448,6 +448,48 @@ TEST(Journal, NothingFollowsTheEnd) {
   EXPECT_THAT(error.what(), HasSubstr("record 2 at byte 35 follows the record that ends"));
 }
 
+TEST(Journal, AContinuedRunLeavesItsEndAndLateRecommendationsBehind) {
+  const TemporaryFolder folder;
+  const auto file = folder / "journal";
+  {
+    JournalContent content;
+    Journal journal(file, content);
+    journal.append(make_record(0));
+    journal.append(LateRecommendations{1, {1, 2}});
+    journal.append(EndRecord{"budget", 1});
+  }
+  {
+    JournalContent content;
+    Journal journal(file, content);
+    ASSERT_TRUE(content.ended);
+    journal.append(ContinueRecord{20, 1});
+    // It is in the file already.
+    EXPECT_FALSE(read_journal(file).ended);
+    journal.append(make_record(1));
+  }
+  const JournalContent continued = read_journal(file);
+  EXPECT_FALSE(continued.ended);
+  EXPECT_FALSE(continued.late.has_value());
+  EXPECT_EQ(continued.training.size(), 2u);
+  const JournalSurvey open = survey_journal(file);
+  EXPECT_FALSE(open.end.has_value());
+  EXPECT_TRUE(open.is_continued);
+  EXPECT_FALSE(open.is_damaged());
+  EXPECT_EQ(open.records, 5u);
+  {
+    JournalContent content;
+    Journal journal(file, content);
+    journal.append(LateRecommendations{1, {3, 4}});
+    journal.append(EndRecord{"budget", 2});
+    EXPECT_THROW(journal.append(make_record(2)), std::logic_error);
+  }
+  const JournalContent ended = read_journal(file);
+  EXPECT_TRUE(ended.ended);
+  EXPECT_EQ(ended.end.evaluations, 2u);
+  EXPECT_EQ(ended.late->x, (std::vector<double>{3, 4}));
+  EXPECT_EQ(survey_journal(file).end->evaluations, 2u);
+}
+
 TEST(Journal, ARecordBeyondTheLimitIsRefusedAndHarmsNothing) {
   const TemporaryFolder folder;
   const auto file = folder / "journal";

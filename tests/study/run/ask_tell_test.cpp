@@ -93,6 +93,14 @@ TEST_F(AskTell, EndsWithTheResultOfARunThatSimulates) {
   }
 }
 
+TEST_F(AskTell, ALargerBudgetContinuesAnEndedRun) {
+  RunRequest request = make_request("ga", "run");
+  finish(request, 4, 2);
+  request.plan.budget = 32;
+  EXPECT_EQ(finish(request, 4, 2).counts.evaluations, 32u);
+  EXPECT_EQ(read_result("run"), simulate(request, "simulated"));
+}
+
 TEST_F(AskTell, HandsOutEachPointOnceAndShowsWhatWaits) {
   const RunRequest request = make_request("ga", "run");
   const AskOutcome first = ask_for(request, 2);

@@ -165,8 +165,8 @@ TEST_F(RunTest, AnAttemptThatFailsInALaterGenerationThanWasRecordedIsRefused) {
 TEST_F(RunTest, SeveralObjectivesLeaveAFront) {
   RunPlan plan;
   plan.problem = load_problem(
-      "q2-pareto", std::vector<std::string>{"workspace.points=4", "sets.validation_cases=2",
-                                            "sets.test_cases=2"});
+      "q2-pareto", std::vector<std::string>{"physics.engine=ode", "workspace.points=4",
+                                            "sets.validation_cases=2", "sets.test_cases=2"});
   plan.optimizer = load_optimizer("ga");
   plan.options =
       Options::parse("ga", plan.optimizer.options, std::vector<std::string>{"population=8"});

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -85,10 +86,47 @@ TEST_F(RunTest, TheWinnerIsTheBestOnTheValidationSetAndItsTestIsComplete) {
   }
 }
 
+TEST_F(RunTest, TheStartIsJudgedOnTheCasesOfTheWinnersTest) {
+  const RunPlan plan = make_small_plan();
+  const auto result = run(plan, "a");
+  ASSERT_TRUE(result && result->winner && result->start);
+  const Problem& problem = *plan.problem.problem;
+  const Evaluation start = problem.evaluate(list_starts(problem.description().variables),
+                                            {CaseRole::test, plan.problem.sets.test, {0, 1, 2, 3}});
+  EXPECT_EQ(result->start->test.case_errors, start.case_errors);
+  EXPECT_EQ(result->start->is_worse_than_winner, calc_rank(problem.description(), result->test) <
+                                                     calc_rank(problem.description(), start));
+}
+
+TEST_F(RunTest, AWinnerThatIsTheStartIsNotBetterThanIt) {
+  const auto result = run(make_small_plan("start"), "a");
+  ASSERT_TRUE(result && result->winner && result->start);
+  EXPECT_FALSE(result->start->is_worse_than_winner);
+  EXPECT_THAT(list_faults(*result),
+              testing::ElementsAre("no design better than the start was found"));
+}
+
+TEST(ListFaults, NameFailuresBesideThoseOfTheStart) {
+  RunResult result;
+  result.tracking = true;
+  result.test.case_errors = {0.001, 0.2, std::numeric_limits<double>::quiet_NaN()};
+  result.test_summary = summarize(result.test.case_errors, get_failure_error(result));
+  EXPECT_THAT(list_faults(result), testing::IsEmpty());  // there is no winner
+  result.judged.resize(1);
+  result.winner = 0;
+  EXPECT_THAT(list_faults(result), testing::ElementsAre("the winner fails 2 of 3 test cases"));
+  result.start.emplace().is_worse_than_winner = true;
+  result.start->test.case_errors = {0.008, 0.009, 0.11};
+  EXPECT_THAT(list_faults(result),
+              testing::ElementsAre("the winner fails 2 of 3 test cases (the start: 1)"));
+}
+
 TEST(EvaluateDesign, InBatchesItIsWhatCaseByCaseGives) {
-  const LoadedProblem loaded = load_problem(
-      "q1-complex", std::vector<std::string>{"workspace.points=3", "physics.judging_engine=lanes"},
-      engines_with_lanes());
+  const LoadedProblem loaded =
+      load_problem("q1-complex",
+                   std::vector<std::string>{"workspace.points=3", "physics.engine=ode",
+                                            "physics.judging_engine=lanes"},
+                   engines_with_lanes());
   const TrackingProblem* problem = loaded.tracking();
   const ArmDesign& design = problem->config().start;
   const TestSet set = problem->get_set("test/2");
@@ -160,7 +198,8 @@ TEST_F(RunTest, ARunOfVersion1KeepsControllersThatStartEmpty) {
 // Its workspace, speed and start are not those that are proposed now.
 TEST_F(RunTest, ARunOfVersion1KeepsWhatWasProposed) {
   const std::vector<std::string> asked = {"robot.urdf=\"planar2\"", "sets.validation_cases=2",
-                                          "sets.test_cases=2", "schedule.cases=1"};
+                                          "sets.test_cases=2", "schedule.cases=1",
+                                          "training.failure_rule=thesis"};
   std::vector<std::string> then = asked;
   then.insert(then.end(), kProposedByVersion1.begin(), kProposedByVersion1.end());
   RunPlan old = make_small_plan("random", 4);
@@ -282,6 +321,9 @@ Evaluation make_judgement(double objective, int failed_cases = 0, double violati
   evaluation.objectives = {objective};
   evaluation.constraint_values = {violation};
   evaluation.failed_cases = failed_cases;
+  evaluation.case_errors.assign(3, objective);
+  std::fill_n(evaluation.case_errors.begin(), failed_cases,
+              std::numeric_limits<double>::quiet_NaN());
   return evaluation;
 }
 
@@ -292,6 +334,43 @@ TEST(ShortenOptimizer, LeavesOutTheFoldersOfAPlugin) {
   for (const std::string name : {"ga", "nlopt:cobyla", "multistart:nlopt:cobyla", "python:mine"}) {
     EXPECT_EQ(shorten_optimizer(name), name);
   }
+}
+
+// Returns the judgement of a design by the errors (m) of its cases; NaN: the case has no number.
+JudgedCandidate judge_errors(const std::vector<double>& errors_m) {
+  JudgedCandidate judged;
+  double sum = 0;
+  int numbers = 0;
+  for (const double error_m : errors_m) {
+    sum += std::isnan(error_m) ? 0 : error_m;
+    numbers += std::isnan(error_m) ? 0 : 1;
+  }
+  judged.validation.case_errors = errors_m;
+  judged.validation.failed_cases = static_cast<int>(errors_m.size()) - numbers;
+  if (numbers > 0) {
+    judged.validation.objectives = {sum / numbers};
+  }
+  return judged;
+}
+
+// Four candidates lose a few cases without a number; forty lie on the floor in all cases, with a
+// number each.
+TEST(ChooseWinner, AnArmOnTheFloorLosesToOneThatDivergesInAFewCases) {
+  ProblemDescription arm;
+  arm.failure_error = kFailureError_m;
+  std::vector<JudgedCandidate> judged;
+  for (int i = 0; i < 40; ++i) {
+    judged.push_back(judge_errors(std::vector<double>(100, 3.1)));
+  }
+  for (const int diverged : {18, 14, 11, 16}) {
+    std::vector<double> errors_m(100, 0.0001);
+    std::fill_n(errors_m.begin(), diverged, std::numeric_limits<double>::quiet_NaN());
+    std::fill_n(errors_m.end() - 20, 20, 0.5);
+    judged.push_back(judge_errors(errors_m));
+  }
+  EXPECT_EQ(choose_winner(arm, judged), std::optional<std::size_t>(42));
+  EXPECT_LT(calc_rank(arm, judge_errors(std::vector<double>(100, 0.0083)).validation),
+            calc_rank(arm, judged[42].validation));  // the start follows its target in all cases
 }
 
 TEST(ChooseWinner, FewerFailedCasesThenFeasibilityThenTheObjective) {

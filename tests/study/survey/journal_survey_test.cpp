@@ -221,6 +221,26 @@ TEST_F(JournalSurveyTest, LateRecommendationsOutliveARepair) {
   EXPECT_EQ(repaired.late->x, (std::vector<double>{1, 2}));
 }
 
+TEST_F(JournalSurveyTest, ARepairKeepsThatARunWasContinued) {
+  std::filesystem::remove(file_);
+  {
+    JournalContent content;
+    Journal journal(file_, content);
+    journal.append(make_record(0));
+    journal.append(LateRecommendations{1, {1, 2}});
+    journal.append(EndRecord{"budget", 1});
+    journal.append(ContinueRecord{20, 1});
+    journal.append(make_record(1));
+    journal.close();
+  }
+  flip(28);  // in the first record
+  JournalRepair done;
+  const JournalContent repaired = repair(done);
+  EXPECT_EQ(done.records_kept, 3u);
+  EXPECT_FALSE(repaired.late.has_value()) << "it is of the smaller budget";
+  EXPECT_FALSE(repaired.ended);
+}
+
 TEST_F(JournalSurveyTest, RecordsWithAProposalOutliveARepair) {
   std::size_t damaged = 0;
   {

@@ -83,6 +83,7 @@ export type VariableType = 'real' | 'integer' | 'category';
 
 // The recorded result and effort of a run. The fields after `cases` are null without a winner.
 export interface Headline {
+  faults: string[]; // why nobody should use the winner as it is; empty if there is no reason
   started: string; // "2026-01-31T12:00:00Z", or "" if it is not recorded
   evaluations: number; // of training
   cases: number; // simulated in training
@@ -236,6 +237,24 @@ export interface Health {
     near: number; // variables near a bound
     nearest: { name: string; bound: 'lower' | 'upper'; distance: number }[]; // the near ones or the nearest one; shares of the range
   };
+  check: WinnerCheck | null; // null if the winner was not checked under other conditions
+}
+
+// How the winner does in settings that differ from its own in one condition each
+// (src/study/verification/winner_check.hpp).
+export interface WinnerCheck {
+  cases: number; // of each setting, the first ones of the test set
+  own_m: number | null; // the mean error in its own setting
+  limit_m: number; // up to which a mean error works
+  settings: CheckedSetting[];
+}
+
+export interface CheckedSetting {
+  name: string; // "2 physics steps per control period"
+  grade: HealthGrade | null; // null: it was not simulated
+  outcome: string; // "fails in 10 of 10 cases"
+  mean_m: number | null;
+  reason: string; // why it or a case of it was not simulated
 }
 
 // A measure that cannot be computed is null, and so is its grade.

@@ -1,7 +1,7 @@
 // The first screen of a run's page: tiles with the run's result and effort, and the health card of
 // the winner. A sign and a word repeat the meaning of each colour.
 import { join_names, shorten } from '../charts/names';
-import type { Health, HealthGrade, JointHealth, MoveHealth, RunData } from '../data';
+import type { CheckedSetting, Health, HealthGrade, JointHealth, MoveHealth, RunData } from '../data';
 import type { GradeLine, SummaryItem, Tile } from '../model';
 import { format_duration, format_number, kMillimetres } from '../numbers';
 import { count_of, get_shown, is_number } from './quantities';
@@ -13,6 +13,7 @@ const kStates: { [grade in HealthGrade]: { state: string; mark: GradeLine['mark'
 };
 const kUngraded = { state: '– not graded', mark: 'none' as const };
 const kUnmeasured = { state: '? not measured', mark: 'none' as const };
+const kUnchecked = { state: '? not checked', mark: 'none' as const };
 const kMostNames = 6; // in one line
 
 // Returns a share as "12 %".
@@ -154,7 +155,9 @@ function make_tiles(data: RunData): Tile[] {
 }
 
 export function make_tiles_item(data: RunData): SummaryItem {
-  return { kind: 'summary', id: 'tiles', title: '', tiles: make_tiles(data), lines: [] };
+  const { faults } = data.headline;
+  const verdict = faults.length > 0 ? { text: `✗ Do not use this design: ${faults.join('; ')}.`, mark: 'bad' as const } : undefined;
+  return { kind: 'summary', id: 'tiles', title: '', ...(verdict === undefined ? {} : { verdict }), tiles: make_tiles(data), lines: [] };
 }
 
 // ---------------------------------------------------------------- health
@@ -244,6 +247,38 @@ function judge_bounds(health: Health): Judged {
   );
 }
 
+// Judges the settings of the check together, by the worst. A setting that was not simulated leaves the
+// check incomplete.
+function judge_check({ check }: Health): Judged {
+  const name = 'Under other conditions';
+  if (check === null) {
+    return {
+      name,
+      ...kUnchecked,
+      value: '',
+      meaning: 'The command that began the run checks the winner, and armwright verify checks more.',
+      complaint: '',
+    };
+  }
+  const with_outcome = (settings: CheckedSetting[]): string =>
+    settings.map((one) => `${shorten(one.outcome)} with ${shorten(one.name)}`).join('; ');
+  const fine = check.settings.filter((one) => one.grade === 'good');
+  const others = check.settings.filter((one) => one.grade !== 'good');
+  const complaints = check.settings.filter((one) => one.grade === 'bad' || one.grade === 'watch');
+  const works = fine.length === 0 ? '' : `works with ${join_names(fine.map((one) => shorten(one.name)))}`;
+  const value = [with_outcome(others), works].filter((text) => text !== '').join('; ');
+  if (complaints.length === 0 && others.length > 0) {
+    return { name, ...kUnchecked, value, meaning: shorten(others[0].reason, 200), complaint: '' };
+  }
+  return judge(
+    name,
+    find_worst(check.settings.map((one) => one.grade)),
+    value,
+    'A real arm differs from the simulation in such ways. Tune with these conditions in training.',
+    with_outcome(complaints),
+  );
+}
+
 function describe_settling(moves: MoveHealth): string {
   const seconds = (time_s: number): string => format_number(time_s, 2) + ' s';
   const times = `median ${seconds(moves.settling_median_s)}, longest ${seconds(moves.settling_largest_s)}`;
@@ -260,6 +295,7 @@ function judge_all(health: Health): Judged[] {
       'The tab Response lists them with their reasons.',
       `${health.failures} of ${count_of(health.cases, 'test case')} failed`,
     ),
+    judge_check(health),
     judge_saturation(health),
     judge_ripple(health),
     judge_bounds(health),
@@ -269,11 +305,11 @@ function judge_all(health: Health): Judged[] {
     ),
     inform(
       'Overshoot, share of the move',
-      moves === null ? '' : `median ${percent(moves.overshoot_median)}, largest ${percent(moves.overshoot_largest)}`,
+      moves === null ? 'no move that counts' : `median ${percent(moves.overshoot_median)}, largest ${percent(moves.overshoot_largest)}`,
     ),
     inform(
       moves === null ? 'Settling time' : `Settling to ${percent(moves.settling_band)} of the move`,
-      moves === null ? '' : describe_settling(moves),
+      moves === null ? 'no move that counts' : describe_settling(moves),
     ),
   ];
 }
@@ -286,15 +322,25 @@ function make_verdict(lines: Judged[]): NonNullable<SummaryItem['verdict']> {
       .join('; ');
   const bad = list('bad');
   const near = list('near');
-  const unmeasured = lines.filter((line) => line.state === kUnmeasured.state);
-  const rest = unmeasured.length === 0 ? '' : ` Not measured: ${unmeasured.map((line) => line.name).join('; ')}.`;
+  const missing = lines.filter((line) => line.state === kUnmeasured.state || line.state === kUnchecked.state);
+  const rest = missing.length === 0 ? '' : ` Not checked: ${missing.map((line) => line.name).join('; ')}.`;
   if (bad !== '') {
     return { text: `✗ The winner is not healthy: ${bad}.${near === '' ? '' : ` Watch: ${near}.`}${rest}`, mark: 'bad' };
   }
   if (near !== '') {
     return { text: `! Nothing about the winner is bad, but watch: ${near}.${rest}`, mark: 'near' };
   }
-  return { text: (rest === '' ? '✓ The winner is healthy.' : '✓ The winner is healthy as far as it was measured.') + rest, mark: 'good' };
+  return rest === ''
+    ? { text: '✓ The winner is healthy.', mark: 'good' }
+    : { text: `? Nothing about the winner is bad as far as it was checked.${rest}`, mark: 'none' };
+}
+
+// Returns a sentence about the check, or an empty text without one.
+function describe_check({ check }: Health): string {
+  const limit = check === null ? '' : format_number(check.limit_m * kMillimetres, 3);
+  return check === null
+    ? ''
+    : ` Other conditions were simulated on the first ${count_of(check.cases, 'case')}: a mean error up to ${limit} mm works, and one failed case is bad.`;
 }
 
 export function make_health_item(health: Health): SummaryItem {
@@ -311,6 +357,7 @@ export function make_health_item(health: Health): SummaryItem {
     caption:
       `Failures and saturation are those of all cases of ${shorten(health.set)}. Oscillation, margin, overshoot and settling are those of ` +
       `${shorten(health.case)}, the median case by error. "Watch" and "bad" begin at ${both(saturation)} of the time in saturation and at ` +
-      `an oscillation with an RMS of ${both(ripple)} of the effort limit. A variable within ${100 * bound} % of a bound is worth watching.`,
+      `an oscillation with an RMS of ${both(ripple)} of the effort limit. A variable within ${100 * bound} % of a bound is worth watching.` +
+      describe_check(health),
   };
 }
