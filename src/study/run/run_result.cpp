@@ -311,11 +311,13 @@ std::string to_json(const RunResult& result) {
        {{"error_m", optional_to_json(result.published.error_m)},
         {"total_torque_n_m", optional_to_json(result.published.total_torque_n_m)},
         {"design", result.published.design},
-        {"where", result.published.where},
-        {"difference", result.published.difference}}},
+        {"where", result.published.where}}},
   };
   if (result.counts.abandoned > 0) {  // as in results from versions without racing
     j["counts"]["abandoned"] = result.counts.abandoned;
+  }
+  if (!result.published.difference.empty()) {
+    j["published"]["difference"] = result.published.difference;
   }
   if (!result.choice.empty()) {
     j["choice"] = result.choice;
