@@ -30,7 +30,7 @@ TEST_F(Kill, AtEveryWriteAndEveryRenameOfARun) {
       SCOPED_TRACE(call + std::to_string(at));
       const std::string out = std::string("runs/") + call + std::to_string(at);
       const Outcome killed = run(make_run(out), files.make_environment(Fault::kill, at, 0));
-      if (killed.exit_code == 0) {
+      if (has_ended(killed)) {
         EXPECT_LT(files.count(), at);
         break;
       }
@@ -40,7 +40,7 @@ TEST_F(Kill, AtEveryWriteAndEveryRenameOfARun) {
       const bool is_run = std::filesystem::exists(folder_ / out / "manifest.json");
       EXPECT_EQ(run({"doctor", out}).exit_code, is_run ? 0 : 2) << run({"doctor", out}).out;
       const Outcome resumed = run(make_run(out));
-      ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+      ASSERT_TRUE(has_ended(resumed)) << resumed.err;
       expect_same_run(folder_ / "runs/whole", folder_ / out);
       EXPECT_THAT(run({"doctor", out}).out, Not(HasSubstr("nothing covers")));
     }
@@ -65,7 +65,7 @@ TEST_F(Kill, AtEveryWriteAndEveryRenameOfARunThatIsContinued) {
       std::filesystem::copy(folder_ / "runs/small", folder_ / out,
                             std::filesystem::copy_options::recursive);
       const Outcome killed = run(make_run(out, "105"), files.make_environment(Fault::kill, at, 0));
-      if (killed.exit_code == 0) {
+      if (has_ended(killed)) {
         EXPECT_LT(files.count(), at);
         break;
       }
@@ -73,13 +73,13 @@ TEST_F(Kill, AtEveryWriteAndEveryRenameOfARunThatIsContinued) {
       ++kills;
       EXPECT_EQ(run({"doctor", out}).exit_code, 0) << run({"doctor", out}).out;
       const Outcome before = run(make_run(out, "70"));
-      if (before.exit_code == 0) {
+      if (has_ended(before)) {
         expect_same_run(folder_ / "runs/small", folder_ / out);
       } else {
         EXPECT_THAT(before.err, HasSubstr("run.budget: recorded 105, now 70"));
       }
       const Outcome resumed = run(make_run(out, "105"));
-      ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+      ASSERT_TRUE(has_ended(resumed)) << resumed.err;
       // The journal has more judgements: those of the smaller budget.
       for (const char* file : {"result.json", "winner.toml", "winner-trajectory.csv",
                                "convergence.csv", "results.sqlite"}) {
@@ -119,7 +119,7 @@ TEST_F(Kill, AtEveryRenameOfAComparison) {
     more[6] = "3";
     ASSERT_EQ(run(at % 2 == 0 ? more : make(out)).exit_code, 0);
     const Outcome last = run({"doctor", out});
-    ASSERT_EQ(last.exit_code, 0) << last.out;
+    ASSERT_TRUE(has_ended(last)) << last.out;
     EXPECT_THAT(last.out, Not(HasSubstr("nothing covers")));
   }
 }
@@ -183,7 +183,7 @@ TEST_P(KillAgainAndAgain, AndResumeEachTime) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "runs");
   const Outcome whole = run_program(folder.path(), make_command(GetParam(), "whole", 2));
-  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  ASSERT_TRUE(has_ended(whole)) << whole.err;
   const auto journal = folder / "runs/killed/journal";
   FailingFiles files(folder / "runs", "write");
   RandomStream random("test/kill-again-and-again", 1);
@@ -215,7 +215,7 @@ TEST_P(KillAgainAndAgain, AndResumeEachTime) {
   EXPECT_LT(count_records(journal), count_records(folder / "whole/journal"))
       << "the last kills came when all work was done";
   const Outcome last = run_program(folder.path(), make_command(GetParam(), "runs/killed", 2));
-  ASSERT_EQ(last.exit_code, 0) << last.err;
+  ASSERT_TRUE(has_ended(last)) << last.err;
   expect_same_run(folder / "whole", folder / "runs/killed");
 }
 
@@ -273,7 +273,7 @@ TEST_F(Kill, AComparisonWithItsWorkersOrWithoutThem) {
   }
   EXPECT_GE(kills, 4);
   const Outcome last = run(make_arm_comparison("killed"));
-  EXPECT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_TRUE(has_ended(last)) << last.err;
   EXPECT_EQ(read_study(folder_ / "whole"), read_study(folder_ / "killed"));
 }
 
