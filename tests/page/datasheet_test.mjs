@@ -20,7 +20,7 @@ after(() => browser.close());
 function export_datasheet(run) {
   const out = join(kFolder, `datasheet-of-${run}`);
   rmSync(out, { recursive: true, force: true });
-  run_program('export', join(kFolder, run), '--format', 'datasheet', '--force', '--out', out);
+  run_program('export', join(kFolder, run), '--format', 'datasheet', '--out', out);
   return out;
 }
 
@@ -97,7 +97,7 @@ test('a PID fits on one page', () => expect_one_page(folder));
 test('so does the controller with the most gains', async () => {
   const run = join(kFolder, 'neural');
   rmSync(run, { recursive: true, force: true });
-  const flags = ['--optimizer', 'cmaes', '--engine', 'articulated', '--budget', '60', '--set', 'control.controller=neural'];
+  const flags = ['--optimizer', 'cmaes', '--engine', 'articulated', '--budget', '400', '--set', 'control.controller=neural'];
   const sets = ['--set', 'sets.validation_cases=1', '--set', 'sets.test_cases=2'];
   run_program('optimize', 'q1-complex', ...flags, ...sets, '--out', run, '--quiet');
   await expect_one_page(export_datasheet('neural'));

@@ -141,7 +141,7 @@ test('what is copied of a session is what is typed', async () => {
   await page.locator('figure.console').first().hover();
   await page.locator('.copy').first().click();
   await page.waitForSelector('.copy:has-text("Copied")');
-  assert.equal(await page.evaluate(() => navigator.clipboard.readText()), 'armwright list problems q1-complex\n');
+  assert.equal(await page.evaluate(() => navigator.clipboard.readText()), 'armwright list problems irb4600\n');
   assert.deepEqual(faults, []);
 });
 

@@ -31,7 +31,7 @@ test('the headline and the whole grid are on the first screen', async () => {
   // Six replicates cannot decide between four optimizers.
   const headline = await page.locator('[data-figure=headline] p').allInnerTexts();
   assert.deepEqual(headline, [
-    'No pair of optimizers can be decided on any of the 2 problems with 6 replicates; at least 8 are needed.',
+    'No pair of optimizers can be decided on any of the 2 problems with 6 replicates; at least 9 are needed.',
     'No optimizer failed, and every run has a value on the test set.',
   ]);
   const plot = page.locator('[data-figure=standing] .plot');
@@ -61,10 +61,10 @@ test('the verdict is folded away, and opened it is word for word as in its file'
 test('one filter applies to all tabs, and survives a change of the tab', async () => {
   const { page, expect_no_faults } = await open_study();
   const filter = page.locator('.filter');
-  assert.equal(await filter.locator('summary').innerText(), '4 of 4 optimizers are shown.');
+  assert.equal(await filter.locator('summary').innerText(), '5 of 5 optimizers are shown.');
   assert.equal(await filter.locator('input').first().isVisible(), false);
   await filter.locator('summary').click();
-  assert.equal(await filter.getByText('only the best 12').isVisible(), false); // there are four
+  assert.equal(await filter.getByText('only the best 12').isVisible(), false); // there are five
   await filter.getByRole('searchbox').fill('cma nlopt:*');
   const expect_shown = async (sentence, present, absent) => {
     assert.equal(await filter.locator('summary').innerText(), sentence);
@@ -81,7 +81,7 @@ test('one filter applies to all tabs, and survives a change of the tab', async (
     const cells = await page.locator('main td').allInnerTexts();
     assert.ok(cells.includes(present) && !cells.includes(absent), cells.slice(0, 20).join(', '));
   };
-  const sentence = '2 of 4 optimizers are shown.';
+  const sentence = '2 of 5 optimizers are shown.';
   await expect_shown(sentence, 'nlopt:bobyqa', 'ga');
   await open_tab(page, 'problem-q2-e6');
   await expect_shown(sentence, 'nlopt:bobyqa', 'ga');
@@ -89,9 +89,9 @@ test('one filter applies to all tabs, and survives a change of the tab', async (
   // A family less, and all names again.
   await filter.getByRole('searchbox').fill('');
   await filter.getByRole('checkbox', { name: 'nlopt (1)' }).click();
-  await expect_shown('3 of 4 optimizers are shown.', 'ga', 'nlopt:bobyqa');
+  await expect_shown('4 of 5 optimizers are shown.', 'ga', 'nlopt:bobyqa');
   await filter.getByRole('searchbox').fill('zzz');
-  assert.equal(await filter.locator('summary').innerText(), '4 of 4 optimizers are shown, because no name matches.');
+  assert.equal(await filter.locator('summary').innerText(), '5 of 5 optimizers are shown, because no name matches.');
   expect_no_faults();
   await page.close();
 });
