@@ -65,12 +65,12 @@ function ask(options, path = '/') {
 test('the page follows the study to its end', async () => {
   const { page, expect_no_faults } = await open_page(browser, address);
   const bar = page.getByRole('progressbar', { name: 'Progress' });
-  assert.equal(await bar.getAttribute('aria-valuenow'), '47');
-  assert.equal(await bar.getAttribute('aria-valuemax'), '48');
+  assert.equal(await bar.getAttribute('aria-valuenow'), '59');
+  assert.equal(await bar.getAttribute('aria-valuemax'), '60');
   // The study is not running, so it has no speed.
   assert.match(
     await bar.getAttribute('aria-valuetext'),
-    /^47 of 48 cells \(97 %\); time left: unknown yet; (simulations per second: unknown yet|no simulation in the last minute); \d+ candidates have failed$/,
+    /^59 of 60 cells \(98 %\); time left: unknown yet; (simulations per second: unknown yet|no simulation in the last minute); \d+ candidates have failed$/,
   );
   assert.equal(await page.locator('.state').innerText(), '');
   cpSync(join(kFolder, 'study', kCell), join(study, kCell), {
