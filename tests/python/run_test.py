@@ -137,7 +137,7 @@ class RunTest(FolderTest):
         self.assertEqual(int(history.charge.sum()), run.counts["cases"])
         self.assertIn(run.x.tolist(), [one["x"] for one in run.candidates])
         another = armwright.optimize("q1-complex", "ga", seed=2, budget=70, set=FAST, new=True)
-        self.assertEqual(another.folder.name, "q1-complex-ga-seed2-002")
+        self.assertEqual(another.folder.name, "q1-complex-ga-seed2-engine_articulated")
 
     def test_refusals_are_the_programs(self):
         for kind, pieces, call in (

@@ -38,10 +38,10 @@ class StudyTest(FolderTest):
 
     def test_a_class_has_a_row_that_the_program_reads(self):
         study = compare(jobs=2)
-        self.assertEqual(study.optimizers, ("ga", "python:steps", "random", "nlopt:neldermead"))
-        self.assertEqual(study.baselines, {"random", "nlopt:neldermead"})
+        self.assertEqual(study.optimizers, ("ga", "python:steps", "start", "random", "nlopt:neldermead"))
+        self.assertEqual(study.baselines, {"start", "random", "nlopt:neldermead"})
         self.assertTrue(study.finished)
-        self.assertEqual(study.values.shape, (4, 2, 6))
+        self.assertEqual(study.values.shape, (5, 2, 6))
         self.assertTrue(np.isfinite(study.values).all())
         self.assertEqual(len({tuple(row) for row in study.start_values[:, 0].tolist()}), 1)  # the same for all
         curves = study.curves("sphere", "python:steps")
@@ -49,7 +49,7 @@ class StudyTest(FolderTest):
         self.assertTrue((np.diff(curves, axis=1) <= 0).all())
         self.assertEqual(study.run("sphere", "python:steps", 2).value, study.values[1, 0, 1])
         self.assertEqual(study.cell("sphere", "python:steps", 2)["value"], study.values[1, 0, 1])
-        self.assertEqual(len(study.pairs("sphere")), 6)
+        self.assertEqual(len(study.pairs("sphere")), 10)
         self.assertEqual(set(study.table("sphere")), set(study.optimizers))
         self.assertEqual(set(study.mean_ranks), set(study.optimizers))
         self.assertEqual("\n".join(study.verdict) + "\n", read_bytes("study/verdict.txt").decode())
@@ -69,7 +69,7 @@ class StudyTest(FolderTest):
 
     def test_grows_and_notices_a_changed_class(self):
         before = compare(replicates=6, problems=["sphere"], optimizers=[Stepsize])
-        self.assertEqual(before.optimizers, ("python:local-steps", "random"))  # it is a local search itself
+        self.assertEqual(before.optimizers, ("python:local-steps", "start", "random"))  # it is a local search itself
         self.assertEqual(armwright.load_study("study").optimizers, before.optimizers)
         after = compare(replicates=7, problems=["sphere"], optimizers=[Stepsize, "cmaes"])
         self.assertEqual(after.values[0, 0, :6].tolist(), before.values[0, 0].tolist())
@@ -86,7 +86,7 @@ class StudyTest(FolderTest):
                                              'set = ["function.dimension=2"]\n')
         study = armwright.compare(study="mine.toml")
         self.assertEqual((study.folder, study.replicates), (pathlib.Path("results/mine"), 2))
-        self.assertEqual(armwright.compare(study="mine.toml", replicates=3).values.shape, (3, 1, 3))
+        self.assertEqual(armwright.compare(study="mine.toml", replicates=3).values.shape, (4, 1, 3))
         for pieces, call in ((["nothing to compare"], lambda: armwright.compare()),
                              (["problems is the text 'sphere'"], lambda: armwright.compare("sphere", ["ga"])),
                              (["must hold names, files or problems of your own"], lambda: armwright.compare([armwright.load_problem("sphere")], ["ga"])),
