@@ -82,7 +82,8 @@ struct SettingTable {
   bool is_array = false;  // true: an array of tables, [[KEY]]
   std::vector<const AnySetting*> settings = {};
   std::vector<const SettingTable*> tables = {};
-  // Of a file whose settings `armwright list settings` lists: the prefix of their names there.
+  // `armwright list settings` puts this prefix before the names of the file's settings. A file that
+  // it does not list has none.
   std::optional<std::string> listed_as = {};
 };
 

@@ -141,9 +141,9 @@ struct OptimizerRow {
   Requirements requirements = {};
   Limits limits = {};
   std::string backend = {};  // the library that it needs: "NLopt (CMake option ...)"; empty: none
-  // Of a paced optimizer: its integer option that names the evaluations with which it plans; 0 stands
-  // for those of the budget. A run that is continued with a larger budget keeps the number with which
-  // it began. Empty: no such option, and such a run cannot be continued.
+  // The integer option with which a paced optimizer is told for how many evaluations it plans; 0
+  // stands for the budget. A run that is continued with a larger budget keeps the number with which
+  // it began. A paced optimizer that leaves this empty cannot be continued.
   std::string pace_option = {};
   // When it runs in a child process (isolation.hpp): "always", "with local=cobyla". Empty: never.
   std::string isolated = {};

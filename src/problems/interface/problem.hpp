@@ -51,8 +51,8 @@ struct DecisionVariable {
   // The words of a category. Its number in a decision vector is the place of the word, from 0, so
   // its bounds are 0 and choices.size() - 1.
   std::vector<std::string> choices = {};
-  // What moves a bound outwards, for messages: "--set variables.bounds_factor=1000 (it is 100)".
-  // Empty if nothing does.
+  // Messages name the setting that moves a bound outwards, such as
+  // "--set variables.bounds_factor=1000 (it is 100)". Empty if no setting does.
   std::string lower_widening = {};
   std::string upper_widening = {};
 };

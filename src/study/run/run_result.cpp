@@ -219,6 +219,14 @@ double get_failure_error(const RunResult& result) {
   return result.tracking ? kFailureError_m : std::numeric_limits<double>::infinity();
 }
 
+namespace {
+
+ErrorSummary summarize_start(const RunResult& result) {
+  return summarize(result.start->test.case_errors, get_failure_error(result));
+}
+
+}  // namespace
+
 std::vector<std::string> list_faults(const RunResult& result) {
   std::vector<std::string> faults;
   if (!result.winner) {
@@ -227,9 +235,7 @@ std::vector<std::string> list_faults(const RunResult& result) {
   const ErrorSummary& winner = result.test_summary;
   std::string start;
   if (result.start) {
-    const ErrorSummary summary =
-        summarize(result.start->test.case_errors, get_failure_error(result));
-    start = fmt::format(" (the start: {})", summary.failures);
+    start = fmt::format(" (the start: {})", summarize_start(result).failures);
   }
   if (winner.failures > 0) {
     faults.push_back(fmt::format("the winner fails {} of {} test cases{}", winner.failures,
@@ -345,11 +351,9 @@ std::string to_json(const RunResult& result) {
       j["winner"]["faults"] = faults;
     }
     if (result.start) {
-      const Evaluation& test = result.start->test;
-      j["start"] = {
-          {"test", evaluation_to_json(test)},
-          {"test_summary", summary_to_json(summarize(test.case_errors, get_failure_error(result)))},
-          {"is_worse_than_winner", result.start->is_worse_than_winner}};
+      j["start"] = {{"test", evaluation_to_json(result.start->test)},
+                    {"test_summary", summary_to_json(summarize_start(result))},
+                    {"is_worse_than_winner", result.start->is_worse_than_winner}};
     }
     // Results of version 1.0 have none of these.
     if (result.test_motion) {

@@ -60,7 +60,8 @@ struct RunResult {
   std::optional<std::size_t> winner;  // index into judged; nothing if none has an objective
   Evaluation test;                    // the winner's on the test set
   ErrorSummary test_summary;
-  // Nothing if there is no winner, in a comparison's cells, in told runs and in identifications.
+  // The start is not tested if there is no winner, in a comparison's cells, in told runs and in
+  // identifications.
   std::optional<JudgedStart> start;
   // The winner's errors in motion on the test set. Nothing in results of version 1.0, of a
   // comparison's cells and of runs without an arm.

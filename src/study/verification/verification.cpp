@@ -86,7 +86,8 @@ std::vector<VerifySetting> list_check_settings(const VerifySetting& own,
   std::vector<VerifySetting> settings;
   const bool is_articulated = own.engine == "articulated";
   for (const std::string& engine : engines) {
-    // Of two engines in joint coordinates, the other one is the quicker second opinion.
+    // ODE gives the second opinion on the articulated engine only: an engine in joint coordinates
+    // checks another one quicker.
     if (engine != own.engine && (is_articulated || engine != "ode")) {
       settings.push_back({engine, own.substeps, 1, own.perturbation});
     }
