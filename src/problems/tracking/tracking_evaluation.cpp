@@ -75,7 +75,7 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
                                        config_.requirements.size());
   ObjectiveTerms counted = terms;
   if (counts_worst) {
-    counted = make_worst_terms();
+    counted = worst_terms_;
     counted.error_m = terms.error_m;
     counted.required = terms.required;
   }
@@ -91,8 +91,8 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
         return !outcome.has_error || !outcome.residuals.empty();
       });
   if (has_residuals) {
-    evaluation.residuals = calc_residuals(
-        objective, counts_worst ? make_strongest_design() : design, counted, outcomes, numbers);
+    evaluation.residuals =
+        calc_residuals(objective, counts_worst ? strongest_ : design, counted, outcomes, numbers);
     evaluation.jacobian =
         calc_jacobian(objective, design, directions_, outcomes, evaluation.residuals);
     if (counts_worst && !evaluation.jacobian.empty()) {  // the largest torque does not change
@@ -193,7 +193,7 @@ ObjectiveTerms TrackingProblem::make_worst_terms() const {
     slowest.speed_m_per_s /= config_.speed_bounds_factor;
   }
   ObjectiveTerms terms;
-  terms.torque_n_m = calc_total_effort(make_strongest_design());
+  terms.torque_n_m = calc_total_effort(strongest_);
   terms.energy_j = terms.torque_n_m * 2 * std::numbers::pi * config_.workspace.points;
   terms.duration_s = calc_case_duration_s(config_, slowest);
   terms.peak_torque_n_m = terms.rms_torque_n_m = terms.torque_n_m;
@@ -217,7 +217,7 @@ std::vector<double> TrackingProblem::penalty_objectives() const {
   // torque is ten times the largest if only torque is minimised. A requirement counts more than the
   // worst training case.
   const TrackingObjective& objective = config_.objective;
-  ObjectiveTerms terms = make_worst_terms();
+  ObjectiveTerms terms = worst_terms_;
   terms.error_m = 10 * config_.cutoff_error_m;
   if (objective.statistic == TrackingObjective::Statistic::mean_with_failures) {
     terms.error_m += 10 * objective.failure_penalty_m;

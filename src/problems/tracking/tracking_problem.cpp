@@ -115,6 +115,8 @@ TrackingProblem::TrackingProblem(TrackingConfig config)
   check_bounds();
   describe_jacobian();
   directions_ = make_directions(config_);
+  strongest_ = make_strongest_design();
+  worst_terms_ = make_worst_terms();
 }
 
 void TrackingProblem::check_bounds() const {

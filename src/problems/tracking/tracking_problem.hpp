@@ -126,7 +126,7 @@ class TrackingProblem final : public Problem {
                                             std::uint64_t first, std::size_t count,
                                             RecordingOptions recording,
                                             std::span<const Requirement> requirements) const;
-  // Returns the design with the largest effort limits that the bounds allow.
+  // Returns the start with the largest effort limits that the bounds allow.
   ArmDesign make_strongest_design() const;
   // Returns the largest torque, energy, duration, mass and deflection that the bounds allow. The
   // error is 0, and nothing is required.
@@ -139,6 +139,8 @@ class TrackingProblem final : public Problem {
   TrackingInputs inputs_;  // refers to config_
   ProblemDescription description_;
   std::vector<ArmDesign> directions_;  // per variable, the derivative of the design
+  ArmDesign strongest_;                // make_strongest_design()
+  ObjectiveTerms worst_terms_;         // make_worst_terms(), of strongest_
   std::map<std::string, TestSet> sets_;
 };
 
