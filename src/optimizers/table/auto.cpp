@@ -161,7 +161,7 @@ class Auto : public Optimizer {
 }  // namespace
 
 std::vector<OptimizerRow> make_auto_rows() {
-  return {{
+  const OptimizerRow row = {
       .name = kAutoName,
       .summary = "Chooses another optimizer by rules about the problem and the budget",
       .source = "Rice 1976, The algorithm selection problem",
@@ -192,7 +192,8 @@ std::vector<OptimizerRow> make_auto_rows() {
         return std::make_unique<Auto>(options);
       },
       .pace_option = kPlannedOption,
-  }};
+  };
+  return {row};
 }
 
 }  // namespace armwright
