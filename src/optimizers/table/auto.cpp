@@ -161,38 +161,36 @@ class Auto : public Optimizer {
 }  // namespace
 
 std::vector<OptimizerRow> make_auto_rows() {
-  const OptimizerRow row = {
-      .name = kAutoName,
-      .summary = "Chooses another optimizer by rules about the problem and the budget",
-      .source = "Rice 1976, The algorithm selection problem",
-      .capabilities = {.bounds = true,
-                       .constraints = true,
-                       .multi_objective = true,
-                       .batch = true,
-                       .noisy = true,
-                       .residuals = true,
-                       .stochastic = true,
-                       .generations = true,
-                       .paced = true,
-                       .integer = true,
-                       .categorical = true},
-      .options = {{.name = "rules",
-                   .description = "file of rules in place of the shipped ones (docs/auto.md)",
-                   .fallback = std::string()},
-                  {.name = kPlannedOption,
-                   .description =
-                       "chooses as for a budget of this many evaluations; 0: that of the "
-                       "run. A run that is continued with a larger budget has the number "
-                       "with which it began",
-                   .fallback = std::int64_t{0},
-                   .lower = 0,
-                   .upper = kLargestInteger,
-                   .is_new = true}},
-      .make = [](const Options& options) -> std::unique_ptr<Optimizer> {
-        return std::make_unique<Auto>(options);
-      },
-      .pace_option = kPlannedOption,
+  OptimizerRow row;  // filled line by line: GCC 12 warns of the same as one initializer
+  row.name = kAutoName;
+  row.summary = "Chooses another optimizer by rules about the problem and the budget";
+  row.source = "Rice 1976, The algorithm selection problem";
+  row.capabilities = {.bounds = true,
+                      .constraints = true,
+                      .multi_objective = true,
+                      .batch = true,
+                      .noisy = true,
+                      .residuals = true,
+                      .stochastic = true,
+                      .generations = true,
+                      .paced = true,
+                      .integer = true,
+                      .categorical = true};
+  row.options = {{.name = "rules",
+                  .description = "file of rules in place of the shipped ones (docs/auto.md)",
+                  .fallback = std::string()},
+                 {.name = kPlannedOption,
+                  .description = "chooses as for a budget of this many evaluations; 0: that of the "
+                                 "run. A run that is continued with a larger budget has the number "
+                                 "with which it began",
+                  .fallback = std::int64_t{0},
+                  .lower = 0,
+                  .upper = kLargestInteger,
+                  .is_new = true}};
+  row.make = [](const Options& options) -> std::unique_ptr<Optimizer> {
+    return std::make_unique<Auto>(options);
   };
+  row.pace_option = kPlannedOption;
   return {row};
 }
 
