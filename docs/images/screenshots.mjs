@@ -18,8 +18,8 @@ async function shoot(target, name) {
   console.log(`docs/images/${name}.png`);
 }
 
-// Shoots the arm in the replay that the page opens with, after a third of the time.
-async function shoot_replay(folder, name) {
+// Shoots the arm in the replay that the page opens with, after a share of the time at which it rests.
+async function shoot_replay(folder, name, share) {
   const page = await open(folder, 'light');
   for (const tab of await list_tabs(page)) {
     await open_tab(page, tab);
@@ -31,18 +31,18 @@ async function shoot_replay(folder, name) {
   await page
     .locator('.replay input[type=range]')
     .first()
-    .evaluate((input) => {
-      input.value = String(Math.round(Number(input.max) * 0.31));
+    .evaluate((input, share) => {
+      input.value = String(Math.round(Number(input.max) * share));
       input.dispatchEvent(new Event('input', { bubbles: true }));
-    });
+    }, share);
   await page.waitForTimeout(500);
   await shoot(page.locator('.card', { has: page.locator('.replay') }), name);
 }
 
-await shoot_replay('irb4600-auto-seed1', 'replay');
-await shoot_replay('my_arm-cmaes-seed1', 'robot');
+await shoot_replay('irb4600-auto-seed1', 'replay', 0.3665);
+await shoot_replay('my_arm-auto-seed1-tip_tool', 'robot', 0.31);
 
-const study = await open('q1', 'light');
+const study = await open('irb4600', 'light');
 await study.waitForTimeout(500);
 await shoot(study, 'verdict');
 await open_tab(study, (await list_tabs(study))[1]);

@@ -133,7 +133,7 @@ json make_check_json(const std::filesystem::path& folder) {
   for (const CheckedSetting& checked : check->settings) {
     settings.push_back({{"name", checked.name},
                         {"grade", grade_verdict(checked.verdict)},
-                        {"outcome", describe_outcome(checked)},
+                        {"outcome", describe_outcome(checked, check->limit_m)},
                         {"mean_m", finite_or_null(checked.summary.mean)},
                         {"reason", checked.fault}});
   }

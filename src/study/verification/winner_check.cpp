@@ -165,11 +165,15 @@ std::string name_setting(const VerifySetting& setting, const VerifySetting& own)
              : fmt::format("{} physics steps per control period", setting.substeps);
 }
 
-std::string describe_outcome(const CheckedSetting& checked) {
+std::string describe_outcome(const CheckedSetting& checked, double limit_m) {
   switch (checked.verdict) {
     case Verdict::holds:
       return "works";
     case Verdict::worse:
+      if (checked.ratio && checked.summary.mean && *checked.summary.mean <= limit_m) {
+        return fmt::format("error {:.0f} % {}", 100 * std::abs(*checked.ratio - 1),
+                           *checked.ratio < 1 ? "smaller" : "larger");
+      }
       return checked.ratio ? fmt::format("{:.{}f} times its own error", *checked.ratio,
                                          *checked.ratio < 2    ? 2
                                          : *checked.ratio < 10 ? 1

@@ -53,8 +53,9 @@ Verdict judge_engine(const ErrorSummary& summary, double limit_m, std::optional<
 
 // Returns the name of a setting, which follows "with".
 std::string name_setting(const VerifySetting& setting, const VerifySetting& own);
-// Returns "works", "3.2 times its own error", "fails in 10 of 10 cases" or "not simulated".
-std::string describe_outcome(const CheckedSetting& checked);
+// Returns "works", "3.2 times its own error", "error 6 % smaller" (in another engine, within the
+// limit), "fails in 10 of 10 cases" or "not simulated".
+std::string describe_outcome(const CheckedSetting& checked, double limit_m);
 
 // Checks the winner of a run that has ended, and writes check.json into its folder, unless the file
 // is there. Does nothing without an arm or a winner, and warns if this process may only read the

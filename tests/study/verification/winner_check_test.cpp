@@ -64,11 +64,14 @@ TEST(CheckWords, SayWhatIsDifferentAndWhatComesOfIt) {
   const auto describe = [&](Verdict verdict, std::optional<double> ratio) {
     checked.verdict = verdict;
     checked.ratio = ratio;
-    return describe_outcome(checked);
+    return describe_outcome(checked, 0.003);
   };
   EXPECT_EQ(describe(Verdict::holds, 1.5), "works");
   EXPECT_EQ(describe(Verdict::worse, 3.24), "3.2 times its own error");
   EXPECT_EQ(describe(Verdict::worse, 1895.3), "1895 times its own error");
+  checked.summary.mean = 0.001;  // another engine, within the limit
+  EXPECT_EQ(describe(Verdict::worse, 0.941), "error 6 % smaller");
+  EXPECT_EQ(describe(Verdict::worse, 1.254), "error 25 % larger");
   checked.summary.cases = 10;
   checked.summary.failures = 3;
   EXPECT_EQ(describe(Verdict::fails, 9), "fails in 3 of 10 cases");
