@@ -133,18 +133,19 @@ double read_number(const Value& value, const std::string& path, const AnySetting
       value.kind == Kind::number ? value.number : static_cast<double>(value.integer);
   if (!range.contains(number)) {
     constexpr double kMillimetres = 1000;  // per metre
-    constexpr double kFarBeyond = 3;       // a smaller excess is a length in metres
+    constexpr double kFarBeyond = 3;       // a smaller excess is in metres
     const double exceeded = number > range.upper ? range.upper : range.lower;
-    const bool may_be_millimetres = setting.unit == "m" &&
+    const bool may_be_millimetres = (setting.unit == "m" || setting.unit.starts_with("m/")) &&
                                     std::abs(number) > kFarBeyond * std::abs(exceeded) &&
                                     range.contains(number / kMillimetres);
     config::fail(
         value.place,
-        fmt::format("{} is {}; it must be {}{}", path, value.describe(), describe_number(range),
-                    may_be_millimetres
-                        ? fmt::format("; {} m: were millimetres meant? Then write {}",
-                                      value.describe(), format_exact(number / kMillimetres))
-                        : ""));
+        fmt::format(
+            "{} is {}; it must be {}{}", path, value.describe(), describe_number(range),
+            may_be_millimetres
+                ? fmt::format("; {} {}: were millimetres meant? Then write {}", value.describe(),
+                              setting.unit, format_exact(number / kMillimetres))
+                : ""));
   }
   return number;
 }

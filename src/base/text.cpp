@@ -65,9 +65,11 @@ RankedName compare_folded(std::string_view name, std::string_view candidate) {
   RankedName ranked;
   if (difference > near) {
     // The distance is at least the difference. Its computation would take long for long lists from
-    // a file, so names of which none contains the other count as if no letter agreed.
-    const bool contains = candidate.find(name) != std::string_view::npos;
-    ranked.folded_distance = contains ? difference : length;
+    // a file, so names of which none contains the other count as if no letter agreed. The first half
+    // of a name is near.
+    const std::size_t place = candidate.find(name);
+    ranked.folded_distance = place != std::string_view::npos ? difference : length;
+    ranked.is_far = place != 0 || 2 * name.size() < candidate.size();
     return ranked;
   }
   ranked.folded_distance = calc_edit_distance(name, candidate);

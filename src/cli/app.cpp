@@ -227,6 +227,19 @@ void apply_read_limit(const CLI::App& app, Session& session) {
   });
 }
 
+// Throws Error{usage} if a flag has an empty value, which would count as if it were not there.
+void refuse_empty_values(const CLI::App& app) {
+  std::string command;
+  for (const CLI::Option* option : find_chosen(app, command).get_options()) {
+    const auto& values = option->results();
+    if (!option->get_positional() && std::ranges::find(values, "") != values.end()) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("{} has an empty value; give it a value or leave it out",
+                              option->get_name()));
+    }
+  }
+}
+
 int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
   if (argc == 1) {
     write_stdout(kGuide);
@@ -243,6 +256,7 @@ int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw Error(ErrorKind::usage, describe_mistake(app, error));
   }
+  refuse_empty_values(app);
   const std::vector<std::string> choices = {"auto", "always", "never"};
   if (std::find(choices.begin(), choices.end(), session.color) == choices.end()) {
     throw Error(ErrorKind::usage, describe_unknown("--color", session.color, choices));

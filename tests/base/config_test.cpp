@@ -178,6 +178,9 @@ TEST(Config, AsksWhetherATooLargeLengthIsInMillimetres) {
       }),
       "q1.toml:1: centre_m[1] is -5000; it must be a finite number >= -1000 and <= 1000; -5000 m: "
       "were millimetres meant? Then write -5");
+  const auto speed = number("speed_m_per_s", range);
+  EXPECT_THAT(usage_error_of([&] { parse("speed_m_per_s = 1500\n").get(speed); }),
+              testing::EndsWith("; 1500 m/s: were millimetres meant? Then write 1.5"));
   // A thousandth of it is not in the range either, and torques are not in millimetres.
   for (const char* key : {"radius_m = 450000", "radius_m = -1", "torque_n_m = 450"}) {
     const std::string name(key, std::string(key).find(' '));

@@ -95,12 +95,34 @@ TEST_F(BadWinner, IsExportedForARobotByForceOnlyAndThenSaysSo) {
   EXPECT_EQ(run({"export", "run", "--format", "csv"}).exit_code, 0);  // numbers for research
 }
 
+TEST_F(BadWinner, MayMissItsConstraintsOnly) {
+  const Outcome outcome =
+      run({"optimize", "q2-error", "--optimizer", "cmaes", "--budget", "10", "--set",
+           "sets.validation_cases=2", "--set", "sets.test_cases=3", "--out", "run", "--quiet"});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  const std::string fault = "on the test set the winner violates total_torque";
+  EXPECT_THAT(outcome.out, HasSubstr("Do not use this design: " + fault));
+  const Outcome refused = run({"export", "run", "--format", "ros2-control"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr(fault));
+  EXPECT_EQ(run({"report", "run", "--quiet"}).exit_code, 0);
+  EXPECT_THAT(read_file(folder_ / "run/report.html", std::size_t{1} << 26),
+              AllOf(HasSubstr(fault), HasSubstr("\"violated\":[\"total_torque\"]")));
+}
+
 TEST_F(BadWinner, GoodOnesSayNothing) {
   const Outcome outcome =
       run({"optimize", "q1-complex", "--optimizer", "cmaes", "--budget", "400", "--set",
            "sets.validation_cases=4", "--set", "sets.test_cases=4", "--out", "run", "--quiet"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
   EXPECT_THAT(outcome.out, Not(HasSubstr("Do not use")));
+  // What the check found goes with the gains.
+  const Outcome exported = run({"export", "run", "--format", "ros2-control"});
+  EXPECT_EQ(exported.exit_code, 0);
+  const std::string weak = "This design does not work under other conditions: 10 physics steps";
+  EXPECT_THAT(exported.err, HasSubstr("warning: " + weak));
+  EXPECT_THAT(read_file(folder_ / "run/export-ros2-control/controllers-jazzy.yaml"),
+              HasSubstr(weak));
 }
 
 }  // namespace

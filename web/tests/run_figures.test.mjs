@@ -470,6 +470,16 @@ test('the health card of a healthy winner, and of one that was not measured', ()
   assert.match(find(data, 'health').verdict.text, /^✗ The winner is not healthy: 2 of 500 test cases failed\. Not checked/);
 });
 
+test('a winner that violates a constraint on the test set is not healthy', () => {
+  const data = make_run_data();
+  const { health } = data.arm;
+  assert.ok(!find(data, 'health').lines.some((line) => line.name.startsWith('Constraints')));
+  health.violated = [];
+  assert.ok(find(data, 'health').lines.some((line) => line.name === 'Constraints on the test set' && line.value === 'met'));
+  health.violated = ['total_torque'];
+  assert.match(find(data, 'health').verdict.text, /^✗ The winner is not healthy: it violates total_torque/);
+});
+
 test('a winner is healthy only if it works under all other conditions', () => {
   const data = make_run_data();
   const { health } = data.arm;

@@ -39,6 +39,9 @@ int run_export(const ExportOptions& options) {
   const ExportSummary summary =
       export_runs(options.folder, options.format, options.out, options.force);
   const std::string folder = sanitize(summary.folder.string());
+  for (const std::string& warning : summary.warnings) {
+    write_message("warning: " + warning);
+  }
   if (!summary.files.empty()) {
     write_stdout(fmt::format("{} as {} in {}: {}\n", summary.winner, options.format, folder,
                              sanitize(join(summary.files, ", "))));

@@ -196,9 +196,10 @@ std::string describe_reached_bounds(const RunResult& result,
     }
     if (named.size() < kMostNamed) {
       const double bound = to.is_upper ? variable.upper : variable.lower;
-      named.push_back(fmt::format("{} lies at its {} bound ({}{}{})", sanitize(variable.name),
-                                  to.is_upper ? "upper" : "lower", format_significant(bound),
-                                  variable.unit.empty() ? "" : " ", sanitize(variable.unit)));
+      named.push_back(fmt::format("{} lies {} its {} bound ({}{}{})", sanitize(variable.name),
+                                  to.distance > 0 ? "near" : "at", to.is_upper ? "upper" : "lower",
+                                  format_significant(bound), variable.unit.empty() ? "" : " ",
+                                  sanitize(variable.unit)));
     }
   }
   const std::size_t more = places.size() - named.size();

@@ -261,7 +261,7 @@ constexpr const char* kTestEnd = R"raw(plugin='@PLUGIN@'
 "$armwright" check-plugin "$plugin"
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
-"$armwright" optimize sphere --optimizer "$plugin" --budget 1000 --out "$results/run"
+"$armwright" optimize sphere --optimizer "$plugin" --budget 1000 --out "$results/run" --quiet > /dev/null
 )raw";
 
 const TemplateLanguage kPluginLanguages[] = {

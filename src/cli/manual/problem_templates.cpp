@@ -253,7 +253,7 @@ constexpr const char* kProblemTestEnd = R"raw(problem='@PLUGIN@'
 "$armwright" check-problem "$problem"
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
-"$armwright" optimize "$problem" --optimizer cmaes --budget 200 --out "$results/run"
+"$armwright" optimize "$problem" --optimizer cmaes --budget 200 --out "$results/run" --quiet > /dev/null
 )raw";
 
 const TemplateLanguage kProblemLanguages[] = {

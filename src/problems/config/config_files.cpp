@@ -108,6 +108,12 @@ std::filesystem::path resolve_config(std::string_view kind, std::string_view nam
   }
   const std::string extension = get_extension(kind);
   const std::filesystem::path path(name_or_path);
+  if (kind == "problems" && (path.extension() == ".urdf" || path.extension() == ".xml")) {
+    throw Error(ErrorKind::usage,
+                fmt::format("'{0}' is the file of a robot, not of a problem; name it as the robot: "
+                            "--robot {0}",
+                            sanitize(name_or_path)));
+  }
   const bool has_folder = name_or_path.find('/') != std::string_view::npos;
   // Shipped robots are URDF files; load_urdf() also reads MJCF, and refuses xacro.
   const bool is_other_robot =

@@ -77,14 +77,18 @@ Evaluation TrackingProblem::aggregate(std::span<const double> x,
   if (counts_worst) {
     counted = worst_terms_;
     counted.error_m = terms.error_m;
-    counted.required = terms.required;
+    counted.required = terms.required;  // at least those of a case that ends early at its end
+    for (std::size_t i = 0; i < counted.required.size(); ++i) {
+      counted.required[i] =
+          std::max(counted.required[i], kWorstRatio * config_.requirements[i].limit);
+    }
   }
   evaluation.objectives = calc_objectives(objective, counted);
   evaluation.constraint_values = calc_constraints(objective, counted);
   if (const auto& limit_m = config_.tubes.deflection_limit_m) {
     evaluation.constraint_values.push_back(counted.deflection_m / *limit_m - 1);
   }
-  append_constraints(config_.requirements, terms.required, evaluation.constraint_values);
+  append_constraints(config_.requirements, counted.required, evaluation.constraint_values);
   // A case with an error has residuals if they were asked for and the case was not abandoned.
   const bool has_residuals =
       description_.has_residuals && std::ranges::all_of(outcomes, [](const CaseOutcome& outcome) {

@@ -357,8 +357,8 @@ std::string make_datasheet(const FinishedArm& arm) {
       "head>\n<body>\n<main>\n<h1>{0}</h1>\n"
       "<p class=\"lead\">{2}. All numbers are simulated, none is measured.</p>\n",
       escape_html(title), kDatasheetStyle, escape_html(sanitize(arm.run.problem->title)));
-  for (const std::string& fault : list_faults(arm.result())) {
-    html += fmt::format("<p class=\"fault\">Do not use this design: {}.</p>\n", escape_html(fault));
+  for (const std::string& warning : arm.warnings) {
+    html += fmt::format("<p class=\"fault\">{}</p>\n", escape_html(warning));
   }
   html += "<div class=\"columns\">\n" + make_section("Robot", make_robot_facts(arm)) +
           make_section("Task", make_task_facts(arm)) +

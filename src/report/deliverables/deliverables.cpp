@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include "base/build_info.hpp"
@@ -17,6 +18,7 @@
 #include "sim/robot/urdf_writer.hpp"
 #include "sim/tracking/designed_arm.hpp"
 #include "study/run/run.hpp"
+#include "study/verification/winner_check.hpp"
 
 namespace armwright {
 namespace {
@@ -57,9 +59,7 @@ std::vector<std::string> describe_origin(const FinishedArm& arm) {
                                           kMillimetresPerMetre * *test.mean)
                             : "no mean",
                   test.failures)};
-  for (const std::string& fault : list_faults(arm.result())) {
-    lines.push_back("Do not use this design: " + fault + ".");
-  }
+  std::ranges::copy(arm.warnings, std::back_inserter(lines));
   if (arm.starts_held()) {
     lines.emplace_back(
         "The simulated controllers started with integrals that hold the arm against gravity. One "
@@ -171,7 +171,8 @@ FinishedArm load_finished_arm(const fs::path& folder, std::string_view format, b
                                    "larger budget or another start",
                                    format));
   }
-  if (const auto faults = list_faults(result); !faults.empty() && !force) {
+  const std::vector<std::string> faults = list_faults(result);
+  if (!faults.empty() && !force) {
     refuse_run(folder, fmt::format("{}. A robot should not get this design: optimize again with a "
                                    "larger budget or another optimizer. --force writes {} anyway",
                                    join(faults, "; "), format));
@@ -185,6 +186,16 @@ FinishedArm load_finished_arm(const fs::path& folder, std::string_view format, b
                             sanitize(folder.string()), arm.run.problem_fault));
   }
   arm.design = arm.run.tracking()->make_design(arm.run.find_best());
+  for (const std::string& fault : faults) {
+    arm.warnings.push_back("Do not use this design: " + fault + ".");
+  }
+  const auto check = load_check(folder);
+  const std::string weak = check ? list_weaknesses(*check) : "";
+  if (!check) {
+    arm.warnings.emplace_back("This design was not checked under other conditions.");
+  } else if (!weak.empty()) {
+    arm.warnings.push_back("This design does not work under other conditions: " + weak + ".");
+  }
   return arm;
 }
 

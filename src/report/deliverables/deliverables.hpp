@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "report/evidence/recorded_run.hpp"
 
@@ -14,6 +15,9 @@ namespace armwright {
 struct FinishedArm {
   RecordedRun run;   // with its result, a winner and the arm's problem
   ArmDesign design;  // the winner
+  // Sentences that stand in every file: the winner's faults (list_faults()), and the conditions under
+  // which it does not work (study/verification/winner_check.hpp).
+  std::vector<std::string> warnings;
 
   const TrackingConfig& config() const { return run.tracking()->config(); }
   const RunResult& result() const { return *run.result; }

@@ -159,12 +159,14 @@ json make_health(const RecordedRun& run, const ShownDesign& winner, PageSimulato
   const TargetTable targets = setup->make_targets(set.make_case(number));
   const TrackingTask task = problem.make_task(design);
   const std::uint64_t failures = summarize_cases(winner.results).failures;
+  const std::vector<std::string> violated = list_violated(*run.result);
   return {
       {"set", set.name()},
       {"cases", errors.size()},
       {"case", make_case_id(set.name(), number)},
       {"failures", failures},
       {"failing", to_string(failures > 0 ? HealthGrade::bad : HealthGrade::good)},
+      {"violated", violated.empty() && run.result->constraints.empty() ? json() : json(violated)},
       {"ripple_floor_hz", kRippleFloor_hz},
       {"limits",
        {{"saturation", {kSaturationLimits.watch, kSaturationLimits.bad}},

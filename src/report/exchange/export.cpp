@@ -30,6 +30,7 @@ void export_arm(const std::filesystem::path& folder, const ExportFormat& format,
   format.write_arm(arm, target.path());
   put_in_place(target);
   summary.winner = arm.describe();
+  summary.warnings = arm.warnings;
   for (const auto& entry : list_folder(summary.folder)) {
     summary.files.push_back(entry.filename().string());
   }

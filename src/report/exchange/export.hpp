@@ -30,9 +30,10 @@ struct ExportSummary {
   std::filesystem::path folder;
   CollectedRuns collected;     // empty for the formats of one arm
   std::size_t unfinished = 0;  // cells that were left out
-  // The next two are empty except for the formats of one arm.
+  // The next three are empty except for the formats of one arm.
   std::string winner;              // a description of the winner
   std::vector<std::string> files;  // the names of the files, sorted
+  std::vector<std::string> warnings;
 };
 
 // Exports the runs in `folder` as `format` to the new folder `out`. An empty `out` stands for

@@ -56,14 +56,6 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
   const auto add = [&](const std::vector<std::string>& more) {
     sentences.insert(sentences.end(), more.begin(), more.end());
   };
-  if (plan.replicates < kFewestPairs) {
-    add(
-        {fmt::format("{} no pair of optimizers can be decided: there are {} replicates, and with "
-                     "fewer than {} no outcome is significant.",
-                     where, plan.replicates, kFewestPairs)});
-    add(describe_friedman(problem.friedman));
-    return sentences;
-  }
   if (!can_be_significant(plan.replicates, problem.pairs.size())) {
     add({fmt::format(
         "{} no pair of optimizers can be decided: with {} replicates and {} pairs of "

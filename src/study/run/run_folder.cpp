@@ -194,11 +194,13 @@ std::vector<std::string> list_changes(json recorded, json now) {
   return changes;
 }
 
-// Returns a line with the command that began the run, or an empty text if none is recorded.
+// Returns a line with the command that began the run or continued it with a larger budget, or an empty text if none is recorded.
 std::string describe_command(const json& manifest) {
   try {
     const auto words = manifest.value("command_line", std::vector<std::string>());
-    return words.empty() ? "" : "\nThe run was begun with:\n  " + sanitize(quote_command(words));
+    return words.empty()
+               ? ""
+               : "\nThe run was begun or continued with:\n  " + sanitize(quote_command(words));
   } catch (const json::exception&) {
     return "";  // a damaged one does not prevent the list of differences
   }

@@ -227,6 +227,17 @@ ErrorSummary summarize_start(const RunResult& result) {
 
 }  // namespace
 
+std::vector<std::string> list_violated(const RunResult& result) {
+  std::vector<std::string> names;
+  const std::vector<double>& values = result.test.constraint_values;
+  for (std::size_t i = 0; result.winner && i < values.size(); ++i) {
+    if (!(values[i] <= 0)) {
+      names.push_back(result.constraints[i].name);
+    }
+  }
+  return names;
+}
+
 std::vector<std::string> list_faults(const RunResult& result) {
   std::vector<std::string> faults;
   if (!result.winner) {
@@ -240,6 +251,9 @@ std::vector<std::string> list_faults(const RunResult& result) {
   if (winner.failures > 0) {
     faults.push_back(fmt::format("the winner fails {} of {} test cases{}", winner.failures,
                                  winner.cases, start));
+  }
+  if (const auto violated = list_violated(result); !violated.empty()) {
+    faults.push_back("on the test set the winner violates " + join(violated, ", "));
   }
   if (result.start && !result.start->is_worse_than_winner) {
     faults.emplace_back("no design better than the start was found");

@@ -188,6 +188,19 @@ std::string describe_outcome(const CheckedSetting& checked, double limit_m) {
   return to_string(checked.verdict);
 }
 
+std::string list_weaknesses(const WinnerCheck& check) {
+  std::vector<std::string> weak;
+  for (const Verdict verdict : {Verdict::fails, Verdict::worse}) {
+    for (const CheckedSetting& checked : check.settings) {
+      if (checked.verdict == verdict) {
+        weak.push_back(
+            fmt::format("{} ({})", checked.name, describe_outcome(checked, check.limit_m)));
+      }
+    }
+  }
+  return join(weak, ", ");
+}
+
 bool check_winner(const RunRequest& request, const RunResult& result, const ProblemLoader& load,
                   StopSignal& stop, RunObserver& observer) {
   const bool is_there = path_exists(request.folder / kCheckFile) &&

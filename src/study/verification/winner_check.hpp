@@ -57,6 +57,10 @@ std::string name_setting(const VerifySetting& setting, const VerifySetting& own)
 // limit), "fails in 10 of 10 cases" or "not simulated".
 std::string describe_outcome(const CheckedSetting& checked, double limit_m);
 
+// Returns the conditions under which the winner does not work: "a coarse and late sensor (fails in 2
+// of 10 cases), friction in the joints (184 times its own error)". Empty if there are none.
+std::string list_weaknesses(const WinnerCheck& check);
+
 // Checks the winner of a run that has ended, and writes check.json into its folder, unless the file
 // is there. Does nothing without an arm or a winner, and warns if this process may only read the
 // folder. `load` makes the problems of the settings. The result does not depend on `request.jobs`.

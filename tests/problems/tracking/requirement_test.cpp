@@ -254,6 +254,22 @@ TEST(Requirements, ALostTrainingCaseIsWorseThanAnyThatWorksAndLessBadTheFurtherI
   EXPECT_GT(lost.constraint_values[0], kWorstRatio - 1);
   EXPECT_LE(lost.constraint_values[0], 2 * kWorstRatio - 1);
   EXPECT_NEAR(lost.constraint_values[1], lost.constraint_values[0], 1e-9);
+  // A case whose arm lies on the floor until the end of the case is one that ended at its end: small
+  // torques do not count.
+  const auto patient = load_requiring(
+      "{quantity='peak_torque', joint='joint_2', limit_n_m=4000, use='constraint'}",
+      {"physics.engine=articulated", "workspace.points=5", "training.cutoff_error_m=1000"});
+  std::vector<double> x = get_start(*patient);
+  const double standing =
+      patient->evaluate(x, {CaseRole::training, "train/1", {0}}).constraint_values.at(0);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] *= patient->description().variables[i].unit == "N m" ? 0.02 : 1;
+  }
+  const Evaluation fallen = patient->evaluate(x, {CaseRole::training, "train/1", {0}});
+  ASSERT_GT(fallen.case_errors.front(), 0.1);
+  ASSERT_LT(fallen.case_errors.front(), 1000);
+  EXPECT_LT(standing, kWorstRatio - 1);
+  EXPECT_NEAR(fallen.constraint_values.at(0), kWorstRatio - 1, 1e-9);
   TrackingResult result;
   result.status = SimulationStatus::cut_off;
   TargetTable targets;

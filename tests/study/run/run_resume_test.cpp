@@ -176,7 +176,7 @@ TEST_F(RunTest, ARefusalNamesTheCommandAndEachDifferenceOnce) {
       usage_error_of([&] { run(make_plan("ode", "48"), "a"); }),
       AllOf(HasSubstr("problem.physics.engine: recorded \"lanes\", now \"ode\""),
             HasSubstr("run.budget: recorded 40, now 48"),
-            HasSubstr("The run was begun with:\n  armwright optimize 'my problem'\n"),
+            HasSubstr("The run was begun or continued with:\n  armwright optimize 'my problem'\n"),
             testing::Not(HasSubstr("simd")), testing::Not(HasSubstr("problem.run.budget"))));
 }
 

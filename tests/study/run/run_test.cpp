@@ -106,7 +106,7 @@ TEST_F(RunTest, AWinnerThatIsTheStartIsNotBetterThanIt) {
               testing::ElementsAre("no design better than the start was found"));
 }
 
-TEST(ListFaults, NameFailuresBesideThoseOfTheStart) {
+TEST(ListFaults, NameFailuresBesideThoseOfTheStartAndConstraints) {
   RunResult result;
   result.tracking = true;
   result.test.case_errors = {0.001, 0.2, std::numeric_limits<double>::quiet_NaN()};
@@ -115,6 +115,12 @@ TEST(ListFaults, NameFailuresBesideThoseOfTheStart) {
   result.judged.resize(1);
   result.winner = 0;
   EXPECT_THAT(list_faults(result), testing::ElementsAre("the winner fails 2 of 3 test cases"));
+  result.constraints = {{"total_torque", "N m"}, {"error", "m"}};
+  result.test.constraint_values = {0, 0.5};
+  EXPECT_THAT(list_faults(result),
+              testing::ElementsAre("the winner fails 2 of 3 test cases",
+                                   "on the test set the winner violates error"));
+  result.test.constraint_values = {0, -0.5};
   result.start.emplace().is_worse_than_winner = true;
   result.start->test.case_errors = {0.008, 0.009, 0.11};
   EXPECT_THAT(list_faults(result),

@@ -279,6 +279,23 @@ function judge_check({ check }: Health): Judged {
   );
 }
 
+// Returns no line for a problem without constraints.
+function judge_constraints({ violated }: Health): Judged[] {
+  if (violated === null) {
+    return [];
+  }
+  const list = join_some(violated.map((name) => shorten(name)));
+  return [
+    judge(
+      'Constraints on the test set',
+      violated.length > 0 ? 'bad' : 'good',
+      violated.length > 0 ? `violated: ${list}` : 'met',
+      'Run again with a larger budget, or state weaker limits.',
+      `it violates ${list}`,
+    ),
+  ];
+}
+
 function describe_settling(moves: MoveHealth): string {
   const seconds = (time_s: number): string => format_number(time_s, 2) + ' s';
   const times = `median ${seconds(moves.settling_median_s)}, longest ${seconds(moves.settling_largest_s)}`;
@@ -295,6 +312,7 @@ function judge_all(health: Health): Judged[] {
       'The tab Response lists them with their reasons.',
       `${health.failures} of ${count_of(health.cases, 'test case')} failed`,
     ),
+    ...judge_constraints(health),
     judge_check(health),
     judge_saturation(health),
     judge_ripple(health),
