@@ -65,11 +65,9 @@ RankedName compare_folded(std::string_view name, std::string_view candidate) {
   RankedName ranked;
   if (difference > near) {
     // The distance is at least the difference. Its computation would take long for long lists from
-    // a file, so names of which none contains the other count as if no letter agreed. The first half
-    // of a name is near.
-    const std::size_t place = candidate.find(name);
-    ranked.folded_distance = place != std::string_view::npos ? difference : length;
-    ranked.is_far = place != 0 || 2 * name.size() < candidate.size();
+    // a file, so a candidate that does not contain the name counts as if no letter agreed.
+    const bool contains = candidate.find(name) != std::string_view::npos;
+    ranked.folded_distance = contains ? difference : length;
     return ranked;
   }
   ranked.folded_distance = calc_edit_distance(name, candidate);
@@ -189,7 +187,13 @@ std::string list_valid(std::string_view name, std::span<const std::string> valid
 
 std::string describe_unknown(std::string_view what, std::string_view name,
                              std::span<const std::string> valid, std::string_view list_command) {
-  const auto nearest = find_nearest(name, valid);
+  auto nearest = find_nearest(name, valid);
+  const auto longer = std::ranges::find_if(valid, [&](const std::string& one) {
+    return one.starts_with(name) && 2 * name.size() >= one.size();
+  });
+  if (!nearest && longer != valid.end()) {
+    nearest = *longer;
+  }
   return fmt::format("unknown {} '{}'{} Valid: {}", what, show_name(name),
                      nearest ? fmt::format("; did you mean '{}'?", show_name(*nearest)) : ".",
                      list_valid(name, valid, list_command));

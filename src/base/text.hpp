@@ -12,9 +12,9 @@ namespace armwright {
 // Returns the candidate nearest to `name` by Damerau-Levenshtein distance (optimal string
 // alignment). Capital letters and the characters - _ : and blank make no difference. A name without
 // ':' is also compared with the part of a candidate behind its last ':' ("cobyla" with
-// "nlopt:cobyla"). Returns nothing if more than a third of the letters differ, unless the name is
-// the first half of a candidate or more ("cma" of "cmaes"). If several candidates are equally near,
-// returns the first.
+// "nlopt:cobyla"). Returns nothing if more than a third of the letters differ. If several candidates
+// are equally near, returns the first. describe_unknown() also takes a candidate for meant of which
+// `name` is the first half or more ("cma" of "cmaes").
 std::optional<std::string> find_nearest(std::string_view name,
                                         std::span<const std::string> candidates);
 

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <iterator>
 #include <new>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <tuple>
@@ -227,16 +228,32 @@ void apply_read_limit(const CLI::App& app, Session& session) {
   });
 }
 
-// Throws Error{usage} if a flag has an empty value, which would count as if it were not there.
-void refuse_empty_values(const CLI::App& app) {
-  std::string command;
-  for (const CLI::Option* option : find_chosen(app, command).get_options()) {
-    const auto& values = option->results();
-    if (!option->get_positional() && std::ranges::find(values, "") != values.end()) {
-      throw Error(ErrorKind::usage,
-                  fmt::format("{} has an empty value; give it a value or leave it out",
-                              option->get_name()));
+[[noreturn]] void refuse_empty_value(std::string_view flag) {
+  throw Error(ErrorKind::usage,
+              fmt::format("{} has an empty value; give it a value or leave it out", flag));
+}
+
+// Throws Error{usage} for "--flag=", of which the parser would take the next word as the value.
+void refuse_empty_assignments(std::span<char* const> words) {
+  for (const std::string_view word : words) {
+    if (word == "--") {
+      return;
     }
+    if (word.starts_with("--") && word.find('=') == word.size() - 1) {
+      refuse_empty_value(word.substr(0, word.size() - 1));
+    }
+  }
+}
+
+// Throws Error{usage} for an empty value, which would count as if it were not there.
+void refuse_empty_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (std::ranges::find(option->results(), "") != option->results().end()) {
+      refuse_empty_value(option->get_name());
+    }
+  }
+  for (const CLI::App* command : app.get_subcommands()) {
+    refuse_empty_values(*command);
   }
 }
 
@@ -245,6 +262,7 @@ int parse_and_run(CLI::App& app, Session& session, int argc, char** argv) {
     write_stdout(kGuide);
     return exit_code::kDone;
   }
+  refuse_empty_assignments(std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

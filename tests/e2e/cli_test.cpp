@@ -172,11 +172,22 @@ TEST_F(Cli, CountsMayBeWrittenWithAnExponentOrKOrM) {
                  {"--budget is '1.5'; it must be an integer from 1 to 1000000000000; 1e3, 10k and "
                   "2M are integers too"});
   expect_refused({"optimize", "sphere", "--budget", "1e-3"}, 2, {"--budget is '1e-3'"});
-  expect_refused({"optimize", "sphere", "--budget", ""}, 2,
-                 {"--budget has an empty value; give it a value or leave it out"});
+  expect_refused({"optimize", "sphere", "--budget", "2000000M"}, 2, {"--budget is '2000000M'"});
+}
+
+TEST_F(Cli, RefusesEmptyValues) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"--budget", ""}, {"--budget=", "100"}}) {
+    std::vector<std::string> arguments = {"optimize", "sphere"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    expect_refused(arguments, 2, {"--budget has an empty value; give it a value or leave it out"});
+  }
+  expect_refused({"doctor", ""}, 2, {"has an empty value"});
+}
+
+TEST_F(Cli, ARobotsFileInPlaceOfAProblemIsNamedWithItsFlag) {
   expect_refused({"optimize", "arm.urdf"}, 2,
                  {"'arm.urdf' is the file of a robot", "--robot arm.urdf"});
-  expect_refused({"optimize", "sphere", "--budget", "2000000M"}, 2, {"--budget is '2000000M'"});
 }
 
 TEST_F(Cli, AsksWhetherALengthIsInMillimetres) {

@@ -474,10 +474,12 @@ test('a winner that violates a constraint on the test set is not healthy', () =>
   const data = make_run_data();
   const { health } = data.arm;
   assert.ok(!find(data, 'health').lines.some((line) => line.name.startsWith('Constraints')));
-  health.violated = [];
+  health.constraints = { grade: 'good', violated: [] };
   assert.ok(find(data, 'health').lines.some((line) => line.name === 'Constraints on the test set' && line.value === 'met'));
-  health.violated = ['total_torque'];
+  health.constraints = { grade: 'bad', violated: ['total_torque'] };
   assert.match(find(data, 'health').verdict.text, /^✗ The winner is not healthy: it violates total_torque/);
+  health.constraints = { grade: null, violated: [] };
+  assert.match(find(data, 'health').verdict.text, /Not checked: Constraints on the test set/);
 });
 
 test('a winner is healthy only if it works under all other conditions', () => {

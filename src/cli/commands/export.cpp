@@ -81,8 +81,8 @@ void add_export(CLI::App& app, Session& session) {
       ->type_name("DIR");
   command->add_flag(
       "--force", options->force,
-      "Write ros2-control, urdf or datasheet of a winner that fails test cases or is\n"
-      "not better than the start");
+      "Write ros2-control, urdf or datasheet of a winner that fails test cases, violates\n"
+      "a constraint on the test set, or is not better than the start");
   command->callback(
       [options, &session] { session.action = [options] { return run_export(*options); }; });
 }

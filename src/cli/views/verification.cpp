@@ -131,11 +131,7 @@ std::string describe_check(const std::optional<WinnerCheck>& check, const Style&
                                  format_mm(check->own.mean), format_mm(check->limit_m));
   Table table({{"", false}, {"", false}, {"", false}});
   for (const CheckedSetting& checked : check->settings) {
-    const bool has_other_cases =
-        checked.verdict != Verdict::missing && checked.summary.cases != check->own.cases;
-    table.add_row({sanitize(checked.name) +
-                       (has_other_cases ? ", " + format_count(checked.summary.cases, "case") : ""),
-                   describe_outcome(checked, check->limit_m),
+    table.add_row({name_row(checked, *check), describe_outcome(checked, check->limit_m),
                    checked.verdict == Verdict::missing ? sanitize(checked.fault)
                    : checked.summary.mean              ? format_mm(checked.summary.mean) + " mm"
                                                        : ""});

@@ -11,11 +11,11 @@
 // Every requirement is one metric of an evaluation, such as "requirement.overshoot". A requirement
 // that is used as a constraint adds g = value / limit - 1, after the constraints of the objective.
 //
-// In training, a value counts at most kWorstRatio times its limit. A training case that was cut
-// off, diverged or cannot be simulated counts kWorstRatio (2 - s) times the limit, where s is the
-// simulated share of the case's time. So the value is finite, larger than that of any design that
-// works, and smaller the longer the simulation lasted. In validation and test, a case without an
-// error does not count; then no requirement is shown as met (requirement_grade.hpp).
+// In training, a value counts at most kWorstRatio times its limit; with FailureRule::ordered, that
+// of a failing case at least. A case that was cut off, diverged or cannot be simulated counts
+// kWorstRatio (2 - s) times it, where s is the simulated share of the case's time. So the value is
+// finite, and smaller the longer a lost case was simulated. In validation and test, a case without
+// an error does not count; then no requirement is shown as met (requirement_grade.hpp).
 #pragma once
 
 #include <cstdint>

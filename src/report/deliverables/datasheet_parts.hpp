@@ -55,12 +55,12 @@ std::string make_datasheet_figures(const FinishedArm& arm);
 inline constexpr const char* kDatasheetStyle = R"(
 @page { size: A4; margin: 11mm 12mm; }
 * { box-sizing: border-box; }
-body { margin: 0 auto; width: 186mm; font: 8.2pt/1.25 "DejaVu Sans", Arial, sans-serif; color: #111; background: #fff; }
+body { margin: 0 auto; width: 186mm; font: 8.2pt/1.2 "DejaVu Sans", Arial, sans-serif; color: #111; background: #fff; }
 h1 { font-size: 14pt; margin: 0; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
-h2 { font-size: 9pt; margin: 2.2mm 0 .6mm; border-bottom: .3mm solid #111; }
+h2 { font-size: 9pt; margin: 1.7mm 0 .5mm; border-bottom: .3mm solid #111; }
 p { margin: .5mm 0; }
 .lead, .clamped { display: -webkit-box; -webkit-box-orient: vertical; -webkit-line-clamp: 2; overflow: hidden; }
-.fault { border: .5mm solid #a00; padding: .8mm 1.5mm; font-weight: bold; color: #a00; }
+.fault { border: .4mm solid #a00; padding: .3mm 1.5mm; font-size: 7.6pt; font-weight: bold; color: #a00; }
 .columns { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0 5mm; }
 .figures { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 0 5mm; }
 dl { display: grid; grid-template-columns: max-content minmax(0, 1fr); gap: 0 2mm; margin: 0; }

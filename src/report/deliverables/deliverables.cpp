@@ -192,9 +192,11 @@ FinishedArm load_finished_arm(const fs::path& folder, std::string_view format, b
   const auto check = load_check(folder);
   const std::string weak = check ? list_weaknesses(*check) : "";
   if (!check) {
-    arm.warnings.emplace_back("This design was not checked under other conditions.");
+    arm.warnings.emplace_back(
+        "This design was not checked under other conditions; armwright verify checks it.");
   } else if (!weak.empty()) {
-    arm.warnings.push_back("This design does not work under other conditions: " + weak + ".");
+    arm.warnings.push_back("Under other conditions this design is not shown to work: " + weak +
+                           ".");
   }
   return arm;
 }

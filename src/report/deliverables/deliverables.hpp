@@ -15,8 +15,9 @@ namespace armwright {
 struct FinishedArm {
   RecordedRun run;   // with its result, a winner and the arm's problem
   ArmDesign design;  // the winner
-  // Sentences that stand in every file: the winner's faults (list_faults()), and the conditions under
-  // which it does not work (study/verification/winner_check.hpp).
+  // Sentences that stand in every file, without control characters: the winner's faults
+  // (list_faults()), and the conditions under which it is not shown to work (list_weaknesses()), or
+  // that it was not checked.
   std::vector<std::string> warnings;
 
   const TrackingConfig& config() const { return run.tracking()->config(); }
@@ -32,7 +33,8 @@ struct FinishedArm {
 // Throws Error{usage} for a study, for a run of an analytic function, and for a run that has not
 // ended or has no winner; the message says which folder `format` (of --format) needs. Also throws
 // Error{usage} if the winner has faults (list_faults()), unless `force`. Throws
-// Error{bad_data} if files have changed, so that the robot of the run is not known.
+// Error{bad_data} if files have changed, so that the robot of the run is not known, and what
+// load_check() throws.
 FinishedArm load_finished_arm(const std::filesystem::path& folder, std::string_view format,
                               bool force);
 

@@ -108,6 +108,18 @@ json make_bounds(const ProblemDescription& description, const std::vector<double
           {"nearest", std::move(list)}};
 }
 
+// Returns which constraints the winner violates on the test set; null if the problem has none. The
+// grade is null if a case without a number leaves it open.
+json make_constraints(const RunResult& result) {
+  if (result.constraints.empty()) {
+    return nullptr;
+  }
+  const std::vector<std::string> violated = list_violated(result);
+  const bool is_known = !violated.empty() || is_proven_feasible(result.test);
+  const HealthGrade grade = violated.empty() ? HealthGrade::good : HealthGrade::bad;
+  return {{"grade", is_known ? json(to_string(grade)) : json()}, {"violated", violated}};
+}
+
 // Returns the grade of a verdict; null if the setting was not simulated.
 json grade_verdict(Verdict verdict) {
   switch (verdict) {
@@ -131,7 +143,7 @@ json make_check_json(const std::filesystem::path& folder) {
   }
   json settings = json::array();
   for (const CheckedSetting& checked : check->settings) {
-    settings.push_back({{"name", checked.name},
+    settings.push_back({{"name", name_row(checked, *check)},
                         {"grade", grade_verdict(checked.verdict)},
                         {"outcome", describe_outcome(checked, check->limit_m)},
                         {"mean_m", finite_or_null(checked.summary.mean)},
@@ -159,14 +171,13 @@ json make_health(const RecordedRun& run, const ShownDesign& winner, PageSimulato
   const TargetTable targets = setup->make_targets(set.make_case(number));
   const TrackingTask task = problem.make_task(design);
   const std::uint64_t failures = summarize_cases(winner.results).failures;
-  const std::vector<std::string> violated = list_violated(*run.result);
   return {
       {"set", set.name()},
       {"cases", errors.size()},
       {"case", make_case_id(set.name(), number)},
       {"failures", failures},
       {"failing", to_string(failures > 0 ? HealthGrade::bad : HealthGrade::good)},
-      {"violated", violated.empty() && run.result->constraints.empty() ? json() : json(violated)},
+      {"constraints", make_constraints(*run.result)},
       {"ripple_floor_hz", kRippleFloor_hz},
       {"limits",
        {{"saturation", {kSaturationLimits.watch, kSaturationLimits.bad}},

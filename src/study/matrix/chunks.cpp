@@ -27,7 +27,7 @@ double measure_case_s(const StudyPlan& plan, const StudyProblem& problem, CaseRo
   };
   // The first time generates the cases, which are kept, or starts the program. It counts only if
   // that hardly matters.
-  constexpr double kSlow_s = 10;
+  constexpr double kSlow_s = 10;  // programs that load much start within seconds
   const double first_s = measure_s();
   return is_program && first_s > kSlow_s ? first_s : measure_s();
 }

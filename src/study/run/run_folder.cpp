@@ -194,7 +194,8 @@ std::vector<std::string> list_changes(json recorded, json now) {
   return changes;
 }
 
-// Returns a line with the command that began the run or continued it with a larger budget, or an empty text if none is recorded.
+// Returns a line with the command that began the run or continued it with a larger budget, or an
+// empty text if none is recorded.
 std::string describe_command(const json& manifest) {
   try {
     const auto words = manifest.value("command_line", std::vector<std::string>());

@@ -229,10 +229,14 @@ ErrorSummary summarize_start(const RunResult& result) {
 
 std::vector<std::string> list_violated(const RunResult& result) {
   std::vector<std::string> names;
+  if (!result.winner) {
+    return names;
+  }
   const std::vector<double>& values = result.test.constraint_values;
-  for (std::size_t i = 0; result.winner && i < values.size(); ++i) {
-    if (!(values[i] <= 0)) {
-      names.push_back(result.constraints[i].name);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] <= 0)) {  // the file of a result may lack the names
+      names.push_back(i < result.constraints.size() ? sanitize(result.constraints[i].name)
+                                                    : fmt::format("constraint {}", i + 1));
     }
   }
   return names;

@@ -188,13 +188,23 @@ std::string describe_outcome(const CheckedSetting& checked, double limit_m) {
   return to_string(checked.verdict);
 }
 
+std::string name_row(const CheckedSetting& checked, const WinnerCheck& check) {
+  const bool has_other_cases =
+      checked.verdict != Verdict::missing && checked.summary.cases != check.own.cases;
+  return sanitize(checked.name) + (has_other_cases
+                                       ? fmt::format(", {} case{}", checked.summary.cases,
+                                                     checked.summary.cases == 1 ? "" : "s")
+                                       : "");
+}
+
 std::string list_weaknesses(const WinnerCheck& check) {
   std::vector<std::string> weak;
-  for (const Verdict verdict : {Verdict::fails, Verdict::worse}) {
+  for (const Verdict verdict : {Verdict::fails, Verdict::worse, Verdict::missing}) {
     for (const CheckedSetting& checked : check.settings) {
-      if (checked.verdict == verdict) {
-        weak.push_back(
-            fmt::format("{} ({})", checked.name, describe_outcome(checked, check.limit_m)));
+      const bool is_within = checked.summary.mean && *checked.summary.mean <= check.limit_m;
+      if (checked.verdict == verdict && !(verdict == Verdict::worse && is_within)) {
+        weak.push_back(fmt::format("{} ({})", name_row(checked, check),
+                                   describe_outcome(checked, check.limit_m)));
       }
     }
   }

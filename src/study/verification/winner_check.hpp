@@ -57,8 +57,12 @@ std::string name_setting(const VerifySetting& setting, const VerifySetting& own)
 // limit), "fails in 10 of 10 cases" or "not simulated".
 std::string describe_outcome(const CheckedSetting& checked, double limit_m);
 
-// Returns the conditions under which the winner does not work: "a coarse and late sensor (fails in 2
-// of 10 cases), friction in the joints (184 times its own error)". Empty if there are none.
+// Returns the name of a checked setting without control characters, with its number of cases if that
+// is not the check's: "engine ode, 3 cases".
+std::string name_row(const CheckedSetting& checked, const WinnerCheck& check);
+// Returns the conditions under which the winner is not shown to work: "a coarse and late sensor
+// (fails in 2 of 10 cases), engine ode, 2 cases (not simulated)". Empty if there are none. Another
+// engine whose error is within the limit is none.
 std::string list_weaknesses(const WinnerCheck& check);
 
 // Checks the winner of a run that has ended, and writes check.json into its folder, unless the file

@@ -135,7 +135,7 @@ TEST_F(StudyTest, OfFewerThanSixPairsNoPairIsDecided) {
     }
   }
   EXPECT_THAT(describe_verdict(plan, result),
-              Contains(HasSubstr("no pair of optimizers can be decided: there are 5 replicates")));
+              Contains(HasSubstr("no pair of optimizers can be decided: with 5 replicates and ")));
 }
 
 TEST_F(StudyTest, WhereNoDifferenceCouldBeSignificantTheVerdictSaysSo) {

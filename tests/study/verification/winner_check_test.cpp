@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/folder_checksums.hpp"
+#include "base/text.hpp"
 #include "study/run/run_folder.hpp"
 #include "study/run_support.hpp"
 
@@ -67,6 +68,7 @@ TEST(CheckWords, SayWhatIsDifferentAndWhatComesOfIt) {
     return describe_outcome(checked, 0.003);
   };
   EXPECT_EQ(describe(Verdict::holds, 1.5), "works");
+  checked.summary.mean = 0.004;  // above the limit
   EXPECT_EQ(describe(Verdict::worse, 3.24), "3.2 times its own error");
   EXPECT_EQ(describe(Verdict::worse, 1895.3), "1895 times its own error");
   checked.summary.mean = 0.001;  // another engine, within the limit
@@ -76,6 +78,32 @@ TEST(CheckWords, SayWhatIsDifferentAndWhatComesOfIt) {
   checked.summary.failures = 3;
   EXPECT_EQ(describe(Verdict::fails, 9), "fails in 3 of 10 cases");
   EXPECT_EQ(describe(Verdict::missing, {}), "not simulated");
+}
+
+TEST(CheckWords, ListTheConditionsUnderWhichAWinnerIsNotShownToWork) {
+  const auto make = [](const std::string& name, Verdict verdict, std::optional<double> mean_m) {
+    CheckedSetting checked;
+    checked.name = name;
+    checked.verdict = verdict;
+    checked.summary.cases = 10;
+    checked.summary.mean = mean_m;
+    checked.ratio = mean_m ? std::optional(*mean_m / 0.001) : std::nullopt;
+    return checked;
+  };
+  WinnerCheck check;
+  check.own.cases = 10;
+  check.limit_m = 0.003;
+  check.settings = {make("masses +10 %", Verdict::holds, 0.002),
+                    make("engine ode", Verdict::worse, 0.002)};  // within the limit
+  EXPECT_EQ(list_weaknesses(check), "");
+  check.settings.push_back(make("friction\n", Verdict::worse, 0.004));
+  check.settings.push_back(make("engine mujoco", Verdict::missing, {}));
+  check.settings.push_back(make("a sensor", Verdict::fails, 0.2));
+  check.settings.back().summary.cases = 3;
+  check.settings.back().summary.failures = 2;
+  EXPECT_EQ(list_weaknesses(check),
+            "a sensor, 3 cases (fails in 2 of 3 cases), " + sanitize("friction\n") +
+                " (4.0 times its own error), engine mujoco (not simulated)");
 }
 
 WinnerCheck make_example() {

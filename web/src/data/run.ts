@@ -226,7 +226,8 @@ export interface Health {
   case: string; // "test/2:17": the median case by the winner's error
   failures: number;
   failing: HealthGrade;
-  violated: string[] | null; // the constraints that the winner violates on the test set; null if the problem has none
+  // The constraints that the winner violates on the test set; null if the problem has none.
+  constraints: { grade: HealthGrade | null; violated: string[] } | null;
   ripple_floor_hz: number; // only faster oscillations count
   // The shares from which "watch" and "bad" begin, and the distance to a bound up to which a variable
   // is near.

@@ -280,16 +280,17 @@ function judge_check({ check }: Health): Judged {
 }
 
 // Returns no line for a problem without constraints.
-function judge_constraints({ violated }: Health): Judged[] {
-  if (violated === null) {
+function judge_constraints({ constraints }: Health): Judged[] {
+  if (constraints === null) {
     return [];
   }
+  const { grade, violated } = constraints;
   const list = join_some(violated.map((name) => shorten(name)));
   return [
     judge(
       'Constraints on the test set',
-      violated.length > 0 ? 'bad' : 'good',
-      violated.length > 0 ? `violated: ${list}` : 'met',
+      grade,
+      grade === null ? 'a case has no number' : violated.length > 0 ? `violated: ${list}` : 'met',
       'Run again with a larger budget, or state weaker limits.',
       `it violates ${list}`,
     ),
