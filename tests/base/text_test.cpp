@@ -75,7 +75,7 @@ TEST(Text, NamesTheThreeNearestOfMoreThanTwelveNames) {
             "unknown optimizer 'gaa'; did you mean 'ga'? Valid: ga, gaco, auto and 10 more, which "
             "'armwright list optimizers' lists");
   EXPECT_EQ(describe_unknown("joint", "cma", names),
-            "unknown joint 'cma'; did you mean 'cmaes'? Valid: cmaes, ga, auto and 10 more");
+            "unknown joint 'cma'; did you mean 'cmaes'? Valid: ga, cmaes, auto and 10 more");
   EXPECT_EQ(describe_unknown("joint", "cm", names).find("did you mean"), std::string::npos);
   EXPECT_EQ(list_valid("", names), "auto, ga, gaco and 10 more");
   EXPECT_EQ(list_valid(std::string(65, 'r'), names), "auto, ga, gaco and 10 more");

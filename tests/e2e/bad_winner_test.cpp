@@ -97,8 +97,8 @@ TEST_F(BadWinner, IsExportedForARobotByForceOnlyAndThenSaysSo) {
 
 TEST_F(BadWinner, MayMissItsConstraintsOnly) {
   const Outcome outcome =
-      run({"optimize", "q2-error", "--optimizer", "cmaes", "--budget", "10", "--set",
-           "sets.validation_cases=2", "--set", "sets.test_cases=3", "--out", "run", "--quiet"});
+      run({"optimize", "q2-error", "--optimizer", "cmaes", "--budget", "500", "--set",
+           "sets.validation_cases=10", "--set", "sets.test_cases=30", "--out", "run", "--quiet"});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
   const std::string fault = "on the test set the winner violates total_torque";
   EXPECT_THAT(outcome.out, HasSubstr("Do not use this design: " + fault));
@@ -106,8 +106,9 @@ TEST_F(BadWinner, MayMissItsConstraintsOnly) {
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr(fault));
   EXPECT_EQ(run({"report", "run", "--quiet"}).exit_code, 0);
-  EXPECT_THAT(read_file(folder_ / "run/report.html", std::size_t{1} << 26),
-              AllOf(HasSubstr(fault), HasSubstr("\"violated\":[\"total_torque\"]")));
+  const std::string page = read_file(folder_ / "run/report.html", std::size_t{1} << 26);
+  EXPECT_NE(page.find(fault), std::string::npos);
+  EXPECT_NE(page.find("\"violated\":[\"total_torque\"]"), std::string::npos);
 }
 
 TEST_F(BadWinner, GoodOnesSayNothing) {

@@ -58,7 +58,7 @@ std::vector<std::string> describe_problem(const StudyPlan& plan, const ProblemRe
   };
   if (!can_be_significant(plan.replicates, problem.pairs.size())) {
     add({fmt::format(
-        "{} no pair of optimizers can be decided: with {} replicates and {} of "
+        "{} no pair of optimizers can be decided: with {} replicates and {} {} of "
         "optimizers no difference, however clear, is significant after Holm's "
         "correction; {} replicates would do.",
         where, plan.replicates, problem.pairs.size(), problem.pairs.size() == 1 ? "pair" : "pairs",
