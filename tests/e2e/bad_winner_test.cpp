@@ -100,7 +100,7 @@ TEST_F(BadWinner, MayMissItsConstraintsOnly) {
       run({"optimize", "q2-error", "--optimizer", "cmaes", "--budget", "500", "--set",
            "sets.validation_cases=10", "--set", "sets.test_cases=30", "--out", "run", "--quiet"});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-  const std::string fault = "on the test set the winner violates total_torque";
+  const std::string fault = "on the test set the winner violates the limit of total torque";
   EXPECT_THAT(outcome.out, HasSubstr("Do not use this design: " + fault));
   const Outcome refused = run({"export", "run", "--format", "ros2-control"});
   EXPECT_EQ(refused.exit_code, 2);
@@ -108,7 +108,7 @@ TEST_F(BadWinner, MayMissItsConstraintsOnly) {
   EXPECT_EQ(run({"report", "run", "--quiet"}).exit_code, 0);
   const std::string page = read_file(folder_ / "run/report.html", std::size_t{1} << 26);
   EXPECT_NE(page.find(fault), std::string::npos);
-  EXPECT_NE(page.find("\"violated\":[\"total_torque\"]"), std::string::npos);
+  EXPECT_NE(page.find("\"violated\":[\"the limit of total torque\"]"), std::string::npos);
 }
 
 TEST_F(BadWinner, GoodOnesSayNothing) {

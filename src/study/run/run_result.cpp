@@ -234,7 +234,12 @@ std::vector<std::string> list_violated(const RunResult& result) {
   }
   const std::vector<double>& values = result.test.constraint_values;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!(values[i] <= 0)) {  // the file of a result may lack the names
+    if (values[i] <= 0) {
+      continue;
+    }
+    if (i < result.limits.size()) {
+      names.push_back("the limit of " + sanitize(result.limits[i].quantity.name));
+    } else {  // the file of a result may lack the names
       names.push_back(i < result.constraints.size() ? sanitize(result.constraints[i].name)
                                                     : fmt::format("constraint {}", i + 1));
     }

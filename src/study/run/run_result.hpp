@@ -98,8 +98,8 @@ const DecisionVariable* find_discrete(const RunResult& result, std::size_t varia
 // function.
 double get_failure_error(const RunResult& result);
 
-// Returns the names of the constraints that the winner violates on the test set, without control
-// characters. Empty if there is no winner.
+// Returns the constraints that the winner violates on the test set, as "g1" or "the limit of total
+// torque", without control characters. Empty if there is no winner.
 std::vector<std::string> list_violated(const RunResult& result);
 // Returns why nobody should use the winner as it is, one sentence each: it fails on the test set,
 // violates a constraint there, or is not better than the start. Empty if there is no winner.
