@@ -1,6 +1,7 @@
 #include "study/run/candidate_pool.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -92,7 +93,8 @@ CandidatePool::CandidatePool(const RunPlan& plan)
     : problem_(plan.problem.problem->description()),
       selection_(plan.selection),
       fresh_(plan.schedule.renews_cases()),
-      candidates_(selection_, !problem_.constraints.empty()) {}
+      candidates_(selection_,
+                  !problem_.constraints.empty() || std::isfinite(problem_.failure_error)) {}
 
 CandidatePool::~CandidatePool() = default;
 
@@ -178,11 +180,27 @@ void CandidatePool::limit_places(const std::vector<Candidate>& best,
   }
 }
 
-std::vector<Candidate> CandidatePool::select() const {
+RememberedCandidates CandidatePool::list_all() const {
   RememberedCandidates all = candidates_;
   if (fresh_ && incumbent_) {
     all.add(*incumbent_);  // the last generation's best
   }
+  return all;
+}
+
+std::vector<Candidate> CandidatePool::select_earlier() const {
+  const std::vector<Candidate> chosen = select();
+  std::vector<Candidate> earlier;
+  for (Candidate& candidate : list_all().spread(static_cast<std::size_t>(selection_.last))) {
+    if (!is_among(chosen, candidate) && !is_among(earlier, candidate)) {
+      earlier.push_back(std::move(candidate));
+    }
+  }
+  return earlier;
+}
+
+std::vector<Candidate> CandidatePool::select() const {
+  const RememberedCandidates all = list_all();
   const auto most = static_cast<std::size_t>(selection_.last);
   const std::vector<Candidate> candidates =
       problem_.constraints.empty() ? all.last() : all.spread(most);

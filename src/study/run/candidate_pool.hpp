@@ -69,11 +69,17 @@ class CandidatePool {
   // best candidates, at most Selection::most. With constraints, candidates from the whole run replace the last ones; with
   // several objectives, members of the front come first.
   std::vector<Candidate> select() const;
+  // Returns further designs to judge if the best of select() fails there: at most Selection::last
+  // candidates at even distances over the whole run. Small motors let a run end at the edge of
+  // failing, and its last candidates fail together. Empty if the problem has neither constraints nor
+  // a limit for failures.
+  std::vector<Candidate> select_earlier() const;
 
  private:
   struct FrontMember;
   void extend_front(const EvaluationRecord& record, double objective);
   std::vector<Candidate> thin_front() const;
+  RememberedCandidates list_all() const;
   void limit_places(const std::vector<Candidate>& best, std::vector<Candidate>& chosen) const;
 
   const ProblemDescription& problem_;

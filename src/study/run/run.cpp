@@ -279,8 +279,11 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     journal.flush();
     training = read_journal(folder.journal()).training;
   }
-  if (!select_winner(plan, evaluator.select_candidates(), recorded, training, executor, stop,
-                     journal, observer, judges_start(request, plan), result)) {
+  // In a comparison every method has the same few places.
+  const bool is_single = judges_start(request, plan);
+  if (!select_winner(plan, evaluator.select_candidates(),
+                     is_single ? evaluator.select_earlier_candidates() : std::vector<Candidate>{},
+                     recorded, training, executor, stop, journal, observer, is_single, result)) {
     journal.close();
     add_time();
     return std::nullopt;

@@ -89,6 +89,7 @@ class RunEvaluator final : public Evaluator {
   // Error{bad_data} if an evaluation belongs to a generation before the present one.
   void take_remaining_recorded();
   std::vector<Candidate> select_candidates() const { return candidates_.select(); }
+  std::vector<Candidate> select_earlier_candidates() const { return candidates_.select_earlier(); }
 
  private:
   struct Batch;

@@ -226,25 +226,32 @@ std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
 }
 
 bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
-                   const JournalContent& recorded, const RecordedEvaluations& training,
-                   CaseExecutor& executor, StopSignal& stop, Journal& journal,
-                   RunObserver& observer, bool judges_start, RunResult& result) {
+                   std::vector<Candidate> earlier, const JournalContent& recorded,
+                   const RecordedEvaluations& training, CaseExecutor& executor, StopSignal& stop,
+                   Journal& journal, RunObserver& observer, bool judges_start, RunResult& result) {
   const CaseSets& sets = plan.problem.sets;
   JournalledEvaluation evaluation(plan, recorded, training, executor, stop, journal, observer);
-  if (plan.selection.evaluated_only) {
-    drop_unevaluated(training, candidates);
-  }
-  const std::vector<std::vector<double>> designs = list_designs(candidates);
-  auto validated = evaluation.evaluate(
-      designs, make_block(CaseRole::validation, sets.validation, sets.validation_cases));
-  if (!validated) {
+  const ProblemDescription& description = plan.problem.problem->description();
+  const auto judge = [&](std::vector<Candidate>& some) {
+    if (plan.selection.evaluated_only) {
+      drop_unevaluated(training, some);
+    }
+    auto validated = evaluation.evaluate(
+        list_designs(some),
+        make_block(CaseRole::validation, sets.validation, sets.validation_cases));
+    for (std::size_t i = 0; validated && i < some.size(); ++i) {
+      result.judged.push_back({std::move(some[i]), std::move((*validated)[i])});
+    }
+    result.winner = choose_winner(description, result.judged);
+    return validated.has_value();
+  };
+  const auto fails = [&] {
+    return !result.winner ||
+           calc_rank(description, result.judged[*result.winner].validation).failures > 0;
+  };
+  if (!judge(candidates) || (!earlier.empty() && fails() && !judge(earlier))) {
     return false;
   }
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    result.judged.push_back({std::move(candidates[i]), std::move((*validated)[i])});
-  }
-  const ProblemDescription& description = plan.problem.problem->description();
-  result.winner = choose_winner(description, result.judged);
   if (!result.winner) {
     return true;
   }

@@ -36,7 +36,8 @@ std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
                                          const std::vector<JudgedCandidate>& judged);
 
 // Evaluates the candidates and sets `judged`, `winner`, `test` and `test_summary` of the result, and
-// `start`, if there is a winner and `judges_start`.
+// `start`, if there is a winner and `judges_start`. Also judges `earlier`, if the best of
+// `candidates` fails a validation case or none has an objective.
 // Takes evaluations from `recorded` where the journal has them, and appends the others to
 // `journal`. `training` holds all training evaluations of the run: if the problem has a single
 // case, they are the judgements of the decision vectors that they have, and only others are
@@ -44,8 +45,8 @@ std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
 // if the recorded run has ended but lacks an evaluation, and Error{io} if the journal cannot be
 // written.
 bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
-                   const JournalContent& recorded, const RecordedEvaluations& training,
-                   CaseExecutor& executor, StopSignal& stop, Journal& journal,
-                   RunObserver& observer, bool judges_start, RunResult& result);
+                   std::vector<Candidate> earlier, const JournalContent& recorded,
+                   const RecordedEvaluations& training, CaseExecutor& executor, StopSignal& stop,
+                   Journal& journal, RunObserver& observer, bool judges_start, RunResult& result);
 
 }  // namespace armwright

@@ -14,8 +14,9 @@ namespace {
 using testing::ElementsAre;
 
 // Returns which evaluations of a run are judged, if each of its ten evaluations is an improvement,
-// and four last and two best candidates are selected.
-std::vector<std::uint64_t> select_of_ten(const std::string& problem) {
+// and four last and two best candidates are selected. With `earlier`, returns those that are judged
+// if the best of these fails.
+std::vector<std::uint64_t> select_of_ten(const std::string& problem, bool earlier = false) {
   RunPlan plan;
   plan.problem = load_problem(problem);
   plan.selection = {.last = 4, .best = 2};
@@ -28,7 +29,7 @@ std::vector<std::uint64_t> select_of_ten(const std::string& problem) {
     pool.consider(record);
   }
   std::vector<std::uint64_t> evaluations;
-  for (const Candidate& candidate : pool.select()) {
+  for (const Candidate& candidate : earlier ? pool.select_earlier() : pool.select()) {
     evaluations.push_back(candidate.evaluation);
   }
   return evaluations;
@@ -40,6 +41,13 @@ TEST(CandidatePoolTest, TheLastImprovementsAreJudged) {
 
 TEST(CandidatePoolTest, WithConstraintsThoseOfTheWholeRun) {
   EXPECT_THAT(select_of_ten("constrained"), ElementsAre(0, 3, 6, 8, 9));
+}
+
+TEST(CandidatePoolTest, IfTheBestOneFailsFurtherOnesOfTheWholeRun) {
+  EXPECT_THAT(select_of_ten("q2-e2"), ElementsAre(6, 7, 8, 9));
+  EXPECT_THAT(select_of_ten("q2-e2", true), ElementsAre(0, 3));    // of 0, 3, 6 and 9
+  EXPECT_THAT(select_of_ten("constrained", true), ElementsAre());  // has them already
+  EXPECT_THAT(select_of_ten("sphere", true), ElementsAre());       // nothing fails there
 }
 
 // Returns the kinds of the judged candidates of a run with twelve improvements, oldest first: the
