@@ -143,7 +143,7 @@ json make_check_json(const std::filesystem::path& folder) {
   }
   json settings = json::array();
   for (const CheckedSetting& checked : check->settings) {
-    settings.push_back({{"name", name_row(checked, *check)},
+    settings.push_back({{"name", checked.name},
                         {"grade", grade_verdict(checked.verdict)},
                         {"outcome", describe_outcome(checked, check->limit_m)},
                         {"mean_m", finite_or_null(checked.summary.mean)},
