@@ -183,6 +183,7 @@ TEST_F(Cli, RefusesEmptyValues) {
     expect_refused(arguments, 2, {"--budget has an empty value; give it a value or leave it out"});
   }
   expect_refused({"doctor", ""}, 2, {"has an empty value"});
+  expect_refused({"new-plugin", ""}, 2, {"has an empty value"});
 }
 
 TEST_F(Cli, ARobotsFileInPlaceOfAProblemIsNamedWithItsFlag) {

@@ -61,7 +61,7 @@ TEST_F(CliNewPlugin, OverwritesNothingAndRefusesBadNames) {
   EXPECT_EQ(again.exit_code, 2);
   EXPECT_THAT(again.err, HasSubstr("'mine' exists already and is not overwritten"));
   EXPECT_EQ(read_text(folder_ / "mine/mine.cpp"), before);
-  for (const char* name : {"../x", "Mine", "1st", "a-b", "", "test", "ga"}) {
+  for (const char* name : {"../x", "Mine", "1st", "a-b", "test", "ga"}) {
     const Outcome outcome = run({"new-plugin", name});
     EXPECT_EQ(outcome.exit_code, 2) << name;
     EXPECT_THAT(outcome.err, HasSubstr("NAME is '")) << name;
