@@ -152,7 +152,8 @@ TEST_P(ShippedExperiment, HasTheSettingsOfTheThesis) {
   EXPECT_EQ(loaded.sets.training, expected.training);
   EXPECT_EQ(loaded.sets.validation, "validation/1");
   EXPECT_EQ(loaded.sets.test, "test/2");
-  EXPECT_EQ(loaded.sets.validation_cases, 100);
+  // Where torque counts, designs fail in rare cases.
+  EXPECT_EQ(loaded.sets.validation_cases, expected.torque_weight ? 500 : 100);
   EXPECT_EQ(loaded.sets.test_cases, 500);
   EXPECT_TRUE(loaded.schedule.changes_cases());
   EXPECT_EQ(loaded.schedule.cases, 1);
