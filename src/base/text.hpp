@@ -13,13 +13,13 @@ namespace armwright {
 // alignment). Capital letters and the characters - _ : and blank make no difference. A name without
 // ':' is also compared with the part of a candidate behind its last ':' ("cobyla" with
 // "nlopt:cobyla"). Returns nothing if more than a third of the letters differ. If several candidates
-// are equally near, returns the first. describe_unknown() also takes a candidate for meant of which
-// `name` is the first half or more ("cma" of "cmaes").
+// are equally near, returns the first.
 std::optional<std::string> find_nearest(std::string_view name,
                                         std::span<const std::string> candidates);
 
 // Returns the message for an unknown name: "unknown optimizer 'gaa'; did you mean 'ga'? Valid: ga,
-// random". `list_command` is as in list_valid().
+// random". If no name is near, it suggests the first valid name of which `name` is the first half or
+// more ("cma" of "cmaes"). `list_command` is as in list_valid().
 std::string describe_unknown(std::string_view what, std::string_view name,
                              std::span<const std::string> valid,
                              std::string_view list_command = {});
