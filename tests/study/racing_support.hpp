@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -22,8 +23,11 @@ class MeanProblem : public Problem {
  public:
   using CalcError = std::function<double(std::span<const double> x, const CaseBlock& block,
                                          std::uint64_t number)>;
-  MeanProblem(std::size_t variables, CalcError calc_error) : calc_error_(std::move(calc_error)) {
+  MeanProblem(std::size_t variables, CalcError calc_error,
+              double failure_error = std::numeric_limits<double>::infinity())
+      : calc_error_(std::move(calc_error)) {
     description_.name = "mean";
+    description_.failure_error = failure_error;
     for (std::size_t i = 0; i < variables; ++i) {
       description_.variables.push_back(
           {.name = "x_" + std::to_string(i), .unit = "", .lower = -5, .upper = 5, .start = 4});

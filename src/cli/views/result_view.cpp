@@ -361,7 +361,7 @@ std::string make_result_json(const RunResult& result, const std::filesystem::pat
 
 std::string describe_judged(const RunResult& result, const Style& style) {
   std::vector<Column> columns = {{"", false},  {"evaluation"}, {"generation"},
-                                 {"training"}, {"validation"}, {"without number"}};
+                                 {"training"}, {"validation"}, {"failures"}};
   if (!result.constraints.empty()) {
     columns.push_back({"constraints", false});
   }
@@ -378,7 +378,10 @@ std::string describe_judged(const RunResult& result, const Style& style) {
         candidate.generation > 0 ? fmt::format("{}", candidate.generation) : "-",
         candidate.recommended ? "-" : value(candidate.training_objective),
         validation.objectives.empty() ? "-" : value(calc_target(result, validation)),
-        fmt::format("{}", validation.failed_cases)};
+        fmt::format("{} of {}",
+                    summarize(validation.case_errors, get_failure_error(result)).failures +
+                        result.judged[i].further_failures,
+                    validation.case_errors.size() + result.judged[i].further_cases)};
     if (!result.constraints.empty()) {
       cells.push_back(describe_feasibility(validation));
     }

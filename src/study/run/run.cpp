@@ -122,7 +122,7 @@ void check_not_idle(const RunPlan& plan, const RunEvaluator& evaluator) {
   }
 }
 
-// Returns whether the start is judged beside the winner. Nobody asked for a comparison's cell, the
+// Returns whether the start is judged beside the winner, and the winner confirmed. Nobody asked for a comparison's cell, the
 // cases of a told run cost the caller, and an identification starts with a fit of its own.
 bool judges_start(const RunRequest& request, const RunPlan& plan) {
   return request.derived == DerivedFiles::all && plan.selection.most > 0 &&

@@ -129,6 +129,10 @@ json candidate_to_json(const JudgedCandidate& judged) {
   json j = {{"x", candidate.x},
             {"generation", candidate.generation},
             {"validation", evaluation_to_json(judged.validation)}};
+  if (judged.further_cases > 0) {
+    j["further_cases"] = judged.further_cases;
+    j["further_failures"] = judged.further_failures;
+  }
   if (candidate.recommended) {
     j["recommended"] = true;
   } else {
@@ -148,6 +152,10 @@ JudgedCandidate candidate_from_json(const json& j) {
     judged.candidate.training_objective = j.at("training_objective");
   }
   judged.validation = evaluation_from_json(j.at("validation"));
+  if (j.contains("further_cases")) {
+    judged.further_cases = whole_from_json(j.at("further_cases"));
+    judged.further_failures = whole_from_json(j.at("further_failures"));
+  }
   return judged;
 }
 

@@ -29,10 +29,13 @@ struct RunCounts {
   std::uint64_t generations = 0;
 };
 
-// A candidate and its evaluation on the validation set.
+// A candidate and its evaluation on the validation set. Of a candidate that would win, further cases
+// of this set were simulated too (winner_selection.hpp).
 struct JudgedCandidate {
   Candidate candidate;
   Evaluation validation;
+  std::uint64_t further_cases = 0;
+  std::uint64_t further_failures = 0;
 };
 
 // The problem's start on the cases that the winner was tested on.

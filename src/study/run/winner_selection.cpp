@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <mutex>
@@ -17,9 +18,9 @@
 namespace armwright {
 namespace {
 
-CaseBlock make_block(CaseRole role, const std::string& set, int cases) {
+CaseBlock make_block(CaseRole role, const std::string& set, int cases, std::uint64_t first = 0) {
   CaseBlock block{role, set, std::vector<std::uint64_t>(static_cast<std::size_t>(cases))};
-  std::iota(block.numbers.begin(), block.numbers.end(), std::uint64_t{0});
+  std::iota(block.numbers.begin(), block.numbers.end(), first);
   return block;
 }
 
@@ -195,16 +196,33 @@ class JournalledEvaluation {
   std::vector<Evaluation> judgements_;
 };
 
+std::uint64_t count_failures(const ProblemDescription& problem, const Evaluation& evaluation) {
+  return summarize(evaluation.case_errors, problem.failure_error).failures;
+}
+
+double calc_share(std::uint64_t failures, std::uint64_t cases) {
+  return cases > 0 ? static_cast<double>(failures) / static_cast<double>(cases) : 0;
+}
+
 }  // namespace
 
 DesignRank calc_rank(const ProblemDescription& problem, const Evaluation& evaluation) {
-  DesignRank rank{.failures = summarize(evaluation.case_errors, problem.failure_error).failures,
+  DesignRank rank{.failing_share = calc_share(count_failures(problem, evaluation),
+                                              evaluation.case_errors.size()),
                   .violation = kInfinity,
                   .objective = kInfinity};
   if (!evaluation.objectives.empty()) {
     rank.violation = calc_violation(evaluation.constraint_values);
     rank.objective = calc_scalar(problem, evaluation.objectives);
   }
+  return rank;
+}
+
+DesignRank calc_rank(const ProblemDescription& problem, const JudgedCandidate& judged) {
+  DesignRank rank = calc_rank(problem, judged.validation);
+  rank.failing_share =
+      calc_share(count_failures(problem, judged.validation) + judged.further_failures,
+                 judged.validation.case_errors.size() + judged.further_cases);
   return rank;
 }
 
@@ -216,7 +234,7 @@ std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
     if (judged[i].validation.objectives.empty()) {
       continue;
     }
-    const DesignRank rank = calc_rank(problem, judged[i].validation);
+    const DesignRank rank = calc_rank(problem, judged[i]);
     if (!best || rank < *best) {
       winner = i;
       best = rank;
@@ -228,7 +246,7 @@ std::optional<std::size_t> choose_winner(const ProblemDescription& problem,
 bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
                    std::vector<Candidate> earlier, const JournalContent& recorded,
                    const RecordedEvaluations& training, CaseExecutor& executor, StopSignal& stop,
-                   Journal& journal, RunObserver& observer, bool judges_start, RunResult& result) {
+                   Journal& journal, RunObserver& observer, bool is_single, RunResult& result) {
   const CaseSets& sets = plan.problem.sets;
   JournalledEvaluation evaluation(plan, recorded, training, executor, stop, journal, observer);
   const ProblemDescription& description = plan.problem.problem->description();
@@ -247,9 +265,32 @@ bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
   };
   const auto fails = [&] {
     return !result.winner ||
-           calc_rank(description, result.judged[*result.winner].validation).failures > 0;
+           calc_rank(description, result.judged[*result.winner]).failing_share > 0;
   };
-  if (!judge(candidates) || (!earlier.empty() && fails() && !judge(earlier))) {
+  const bool can_fail = std::isfinite(description.failure_error) && !description.has_single_case;
+  const auto most_further = static_cast<std::uint64_t>(sets.validation_cases) *
+                            (is_single && can_fail ? kConfirmationFactor - 1 : 0);
+  // Returns false if stopped.
+  const auto confirm = [&] {
+    while (!fails() && result.judged[*result.winner].further_cases < most_further) {
+      JudgedCandidate& best = result.judged[*result.winner];
+      const auto first = static_cast<std::uint64_t>(sets.validation_cases) + best.further_cases;
+      const auto further = evaluation.evaluate(
+          {best.candidate.x},
+          make_block(CaseRole::validation, sets.validation, sets.validation_cases, first));
+      if (!further) {
+        return false;
+      }
+      best.further_cases += static_cast<std::uint64_t>(sets.validation_cases);
+      best.further_failures += count_failures(description, further->front());
+      result.winner = choose_winner(description, result.judged);
+    }
+    return true;
+  };
+  if (!judge(candidates) || !confirm()) {
+    return false;
+  }
+  if (!earlier.empty() && fails() && (!judge(earlier) || !confirm())) {
     return false;
   }
   if (!result.winner) {
@@ -258,7 +299,7 @@ bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
   const std::vector<double>& winner = result.judged[*result.winner].candidate.x;
   const std::vector<double> start = list_starts(description.variables);
   std::vector<std::vector<double>> designs_to_test = {winner};
-  if (judges_start && !same_bits(start, winner)) {
+  if (is_single && !same_bits(start, winner)) {
     designs_to_test.push_back(start);
   }
   auto tested =
@@ -268,7 +309,7 @@ bool select_winner(const RunPlan& plan, std::vector<Candidate> candidates,
   }
   result.test = tested->front();
   result.test_summary = summarize(result.test.case_errors, get_failure_error(result));
-  if (judges_start) {
+  if (is_single) {
     const bool is_better =
         calc_rank(description, result.test) < calc_rank(description, tested->back());
     result.start = JudgedStart{.test = tested->back(), .is_worse_than_winner = is_better};

@@ -70,11 +70,16 @@ class ResultSurvey {
   std::optional<std::uint64_t> calc_last_row() const;
 
  private:
+  // Returns whether the journal has the further validation cases of a judged design.
+  bool has_further(std::size_t place) const;
+
   RunResult result_;
   std::multimap<std::uint64_t, std::size_t> by_evaluation_;  // evaluation -> index in judged
-  std::vector<char> trained_;      // per judged design: the journal has its training evaluation
-  std::vector<char> judged_;       // per judged design: the journal has any validation of it
-  std::vector<char> validated_;    // per judged design: the journal has its validation
+  std::vector<char> trained_;    // per judged design: the journal has its training evaluation
+  std::vector<char> judged_;     // per judged design: the journal has any validation of it
+  std::vector<char> validated_;  // per judged design: the journal has its validation
+  // Per judged design: failures on further validation cases, by the first and number of the cases.
+  std::vector<std::map<std::pair<std::uint64_t, std::uint64_t>, std::uint64_t>> further_;
   bool is_winner_judged_ = false;  // the journal has any test of the winner
   bool tested_ = false;            // the journal has its test
   std::string test_set_;           // of that test

@@ -38,6 +38,7 @@ ResultSurvey::ResultSurvey(RunResult result) : result_(std::move(result)) {
   }
   judged_.resize(result_.judged.size());
   validated_.resize(result_.judged.size());
+  further_.resize(result_.judged.size());
 }
 
 void ResultSurvey::add(const EvaluationRecord& record) {
@@ -79,7 +80,11 @@ void ResultSurvey::add(const EvaluationRecord& record) {
     if (!same_bits(judged.candidate.x, record.x)) {
       continue;
     }
-    if (record.cases.role == CaseRole::validation) {
+    const std::vector<std::uint64_t>& cases = record.cases.numbers;
+    if (record.cases.role == CaseRole::validation && !cases.empty() && cases.front() > 0) {
+      further_[i][{cases.front(), cases.size()}] =
+          summarize(record.evaluation.case_errors, get_failure_error(result_)).failures;
+    } else if (record.cases.role == CaseRole::validation) {
       judged_[i] = true;
       validated_[i] = validated_[i] || same_values(record.evaluation, judged.validation);
     } else if (result_.winner == i) {
@@ -104,6 +109,20 @@ std::size_t ResultSurvey::count_lost_judgements() const {
     lost += trained_[i] && !judged_[i] ? 1 : 0;
   }
   return lost;
+}
+
+bool ResultSurvey::has_further(std::size_t place) const {
+  const JudgedCandidate& judged = result_.judged[place];
+  const std::uint64_t step = judged.validation.case_errors.size();
+  std::uint64_t failures = 0;
+  for (std::uint64_t first = step; step > 0 && first < step + judged.further_cases; first += step) {
+    const auto found = further_[place].find({first, step});
+    if (found == further_[place].end()) {
+      return false;
+    }
+    failures += found->second;
+  }
+  return failures == judged.further_failures;
 }
 
 std::string ResultSurvey::find_difference(const JournalSurvey& journal) const {
@@ -149,6 +168,10 @@ std::string ResultSurvey::find_difference(const JournalSurvey& journal) const {
     }
     if (!validated_[i]) {
       return fmt::format("its values of {} on the validation set are not in the journal", who);
+    }
+    if (!has_further(i)) {
+      return fmt::format("its failures of {} on further validation cases are not in the journal",
+                         who);
     }
   }
   if (result_.winner && !tested_) {

@@ -131,6 +131,10 @@ std::optional<WinnerCheck> make_winner_check(const LoadedProblem& problem, const
   return check;
 }
 
+bool is_within(const CheckedSetting& checked, double limit_m) {
+  return checked.summary.mean && *checked.summary.mean <= limit_m;
+}
+
 }  // namespace
 
 double calc_check_limit_m(std::optional<double> own_mean_m, double floor_m, double tolerance_m) {
@@ -170,7 +174,7 @@ std::string describe_outcome(const CheckedSetting& checked, double limit_m) {
     case Verdict::holds:
       return "works";
     case Verdict::worse:
-      if (checked.ratio && checked.summary.mean && *checked.summary.mean <= limit_m) {
+      if (checked.ratio && is_within(checked, limit_m)) {
         return fmt::format("error {:.0f} % {}", 100 * std::abs(*checked.ratio - 1),
                            *checked.ratio < 1 ? "smaller" : "larger");
       }
@@ -201,8 +205,8 @@ std::string list_weaknesses(const WinnerCheck& check) {
   std::vector<std::string> weak;
   for (const Verdict verdict : {Verdict::fails, Verdict::worse, Verdict::missing}) {
     for (const CheckedSetting& checked : check.settings) {
-      const bool is_within = checked.summary.mean && *checked.summary.mean <= check.limit_m;
-      if (checked.verdict == verdict && !(verdict == Verdict::worse && is_within)) {
+      if (checked.verdict == verdict &&
+          !(verdict == Verdict::worse && is_within(checked, check.limit_m))) {
         weak.push_back(fmt::format("{} ({})", name_row(checked, check),
                                    describe_outcome(checked, check.limit_m)));
       }

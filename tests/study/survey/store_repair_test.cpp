@@ -139,6 +139,14 @@ TEST_F(StoreRepairTest, AResultThatIsNotTheJournalsIsNamed) {
                     "it counts 41 evaluations, and the journal 40"));
   replace("result.json", "\"evaluations\": 41", "\"evaluations\": 40");
   EXPECT_FALSE(survey_store(temporary_ / "hurt").is_damaged());
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"\"further_failures\": 0", "\"further_failures\": 1"},
+           {"\"further_cases\": 27", "\"further_cases\": 30"}}) {
+    replace("result.json", from, to);
+    EXPECT_TRUE(names(survey_store(temporary_ / "hurt").runs[0], "result.json",
+                      "further validation cases are not in the journal"));
+    replace("result.json", to, from);
+  }
   replace("result.json", "\"failed_cases\": 0", "\"failed_cases\": 1");
   EXPECT_TRUE(names(survey_store(temporary_ / "hurt").runs[0], "result.json",
                     "on the validation set are not in the journal"));
