@@ -58,12 +58,6 @@ py::tuple optimize(const ProblemHandle& problem, const py::object& optimizer,
   request.plan =
       make_plan(load_for_call(problem, host, place.jobs), load_row(optimizer, host), question);
   request.folder = place.choose(make_folder_name(request.plan, problem.settings));
-  if (const auto old = find_old_settings(request.folder, problem.loaded, problem.settings);
-      !old.empty()) {
-    std::vector<std::string> settings = problem.settings;
-    settings.insert(settings.end(), old.begin(), old.end());
-    request.plan.problem = load_problem(problem.name, settings);
-  }
   request.jobs = place.jobs;
   request.command_line = command;
   request.command_line.insert(request.command_line.end(), {"--out", request.folder.string()});

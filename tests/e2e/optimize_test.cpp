@@ -99,61 +99,16 @@ TEST_F(CliOptimize, JudgesTheArmOfTheFirstTutorialOnPerturbedPlants) {
   EXPECT_LT(recorded["mean"], judge("irb4600-start", "everywhere"));
 }
 
-// A run that version 1.0 made with `optimize sphere -o random --set function.dimension=2 --budget
-// 20`, which meant the plain form. The same command means another problem now.
-class CliOptimizeOldRun : public CliOptimize {
- protected:
-  CliOptimizeOldRun() {
-    std::filesystem::create_directories(run_.parent_path());
-    std::filesystem::copy(old_, run_);
-  }
-  // Leaves what a run has that was killed while it evaluated: its plan and half of its journal.
-  void make_unfinished() {
-    std::filesystem::remove(run_ / "result.json");
-    std::filesystem::resize_file(run_ / "journal",
-                                 std::filesystem::file_size(run_ / "journal") / 2);
-  }
-  const std::filesystem::path old_ =
-      std::filesystem::path(ARMWRIGHT_TEST_DATA) / "runs" / "sphere-1.0";
-  const std::filesystem::path run_ = folder_.path() / "results" / "sphere-random-seed1";
-  const std::vector<std::string> command_ = {"optimize", "sphere",
-                                             "-o",       "random",
-                                             "--set",    "function.dimension=2",
-                                             "--budget", "20",
-                                             "--out",    "results/sphere-random-seed1"};
-};
-
-TEST_F(CliOptimizeOldRun, GoesOnWithThePlainFormByTheSameCommand) {
-  make_unfinished();
-  // On one thread, which writes the records in the order of the fixture.
-  const Outcome resumed = run(command_ + std::vector<std::string>{"--jobs", "1"});
-  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
-  EXPECT_THAT(resumed.err, AllOf(HasSubstr("resuming: "), HasSubstr("(function.instance=0)")));
-  EXPECT_EQ(read_text(run_ / "result.json"), read_text(old_ / "result.json"));
-  EXPECT_TRUE(read_text(run_ / "journal") == read_text(old_ / "journal"));
-  EXPECT_EQ(read_text(run_ / "manifest.json"), read_text(old_ / "manifest.json"));
-}
-
-TEST_F(CliOptimizeOldRun, IsTheAnswerIfItIsComplete) {
-  for (int call = 1; call <= 2; ++call) {  // the first writes the files that the fixture lacks
-    const Outcome again = run(command_ + std::vector<std::string>{"--json"});
-    ASSERT_EQ(again.exit_code, 0) << again.err;
-    EXPECT_EQ(again.out, read_text(old_ / "result.json"));
-  }
-}
-
-TEST_F(CliOptimizeOldRun, StaysAsItIsIfTheCommandNamesAnotherInstanceOrFolder) {
-  make_unfinished();
-  const std::string journal = read_text(run_ / "journal");
-  const Outcome named = run(command_ + std::vector<std::string>{"--set", "function.instance=1"});
-  EXPECT_EQ(named.exit_code, 2);
-  EXPECT_THAT(named.err, HasSubstr("problem.function.instance"));
-
-  const Outcome fresh = run(command_ + std::vector<std::string>{"--new"});
-  ASSERT_EQ(fresh.exit_code, 0) << fresh.err;
-  const json manifest = json::parse(read("results/sphere-random-seed1-002/manifest.json"));
-  EXPECT_EQ(manifest.at("/configuration/problem/function/instance"_json_pointer), 1);
-  EXPECT_TRUE(read_text(run_ / "journal") == journal);
+// Version 1.0 made this run with `optimize sphere -o random --set function.dimension=2 --budget 20`.
+TEST_F(CliOptimize, ARunOfVersion1IsRefusedInOneSentenceAndStaysAsItIs) {
+  const auto folder = folder_.path() / "old";
+  std::filesystem::copy(std::filesystem::path(ARMWRIGHT_TEST_DATA) / "runs" / "sphere-1.0", folder);
+  const std::string journal = read_text(folder / "journal");
+  const Outcome outcome = run({"optimize", "sphere", "-o", "random", "--set",
+                               "function.dimension=2", "--budget", "20", "--out", "old"});
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_THAT(outcome.err, HasSubstr("old/manifest.json: version 1.0 of armwright began this run"));
+  EXPECT_TRUE(read_text(folder / "journal") == journal);
 }
 
 TEST_F(CliOptimize, RefusesToGoOnWithAnotherConfiguration) {

@@ -1,7 +1,6 @@
 """Runs from Python: the program's results bit for bit, and classes of Python's as optimizers like any other."""
 import json
 import pathlib
-import shutil
 import signal
 import subprocess
 import sys
@@ -72,14 +71,6 @@ class RunTest(FolderTest):
         run = armwright.optimize("sphere", Late, budget=10, out="late")
         self.assertEqual((run.counts["evaluations"], run.end_reason, run.unused_evaluations), (10, "budget", 0))
         self.assertEqual(run.x.tolist(), [0.0] * len(run.x))
-
-    def test_a_run_of_version_1_on_a_function_goes_on_with_the_plain_form(self):
-        old = pathlib.Path(__file__).parents[1] / "data" / "runs" / "sphere-1.0"
-        shutil.copytree(old, "old")
-        (pathlib.Path("old") / "result.json").unlink()
-        run = armwright.optimize("sphere", "random", budget=20, out="old", set={"function.dimension": 2})
-        self.assertEqual(read_bytes("old/result.json"), read_bytes(old / "result.json"))
-        self.assertEqual(run.counts["evaluations"], 20)
 
     def test_an_early_end_says_why_and_what_is_left(self):
         run = armwright.optimize("sphere", Early, budget=10, out="early")

@@ -309,15 +309,6 @@ test('what is missing is left out and said', () => {
   check_tabs(study.make_study_tabs({ ...data, problems: [], optimizers: [] }));
 });
 
-test('captions say that running times are as coarse as the checkpoints only where they are', () => {
-  const get_caption = (exact_times, id) =>
-    find(study.make_study_tabs(study.make_study_data({ optimizers: 3, replicates: 4, problems: 2, exact_times })), id).caption;
-  for (const id of ['runtime-ecdf-q1-problem-1', 'cost-quality-q1-problem-1']) {
-    assert.match(get_caption(false, id), /as coarse as the checkpoints, because some runs were recorded by version 1\.0/);
-    assert.doesNotMatch(get_caption(true, id), /checkpoints/);
-  }
-});
-
 test('fixed targets are a table, fastest first, where the study has some', () => {
   const data = study.make_study_data({ optimizers: 3, replicates: 4, problems: 2 });
   check_tabs(study.make_study_tabs(data));

@@ -62,18 +62,10 @@ struct OptimizeOptions : PlanOptions {
   bool quiet = false;
 };
 
-// Makes the plan of the run and chooses its folder. If the folder holds a run of version 1.0 that
-// needs settings (find_old_settings()), returns them; `options` and the plan get them too.
-std::vector<std::string> make_request(OptimizeOptions& options, RunRequest& request) {
+// Makes the plan of the run and chooses its folder.
+void make_request(OptimizeOptions& options, RunRequest& request) {
   request.plan = options.make_plan();
   request.folder = options.folder.choose(make_folder_name(request.plan, options.get_overrides()));
-  std::vector<std::string> old =
-      find_old_settings(request.folder, request.plan.problem, options.overrides.set);
-  if (!old.empty()) {
-    std::ranges::copy(old, std::back_inserter(options.overrides.set));
-    request.plan.problem = load_problem(options.get_problem(), options.get_overrides());
-  }
-  return old;
 }
 
 // Returns the command that resumes this run. It is the typed command without --new, and with --out
@@ -248,14 +240,8 @@ int run_optimize(OptimizeOptions options, Session& session) {
         request.jobs);
   }
   apply_time_limit(options.time_limit, session.stop);
-  const std::vector<std::string> old_settings = make_request(options, request);
-  std::vector<std::string> notes = check_paths(request.plan.problem);
-  if (!old_settings.empty()) {
-    notes.push_back(
-        fmt::format("version 1.0 began this run, so the run keeps the problem of then ({}); --new "
-                    "begins a run on the problem as it is now",
-                    join(old_settings, ", ")));
-  }
+  make_request(options, request);
+  const std::vector<std::string> notes = check_paths(request.plan.problem);
   request.command_line = make_command(options, session, request.folder);
   if (!options.quiet) {
     announce(request, job.describe());

@@ -175,19 +175,9 @@ void read_json(const fs::path& file, std::vector<ImportedRun>& runs) {
 void read_ioh(const fs::path& file, std::vector<ImportedRun>& runs) {
   try {
     const json root = json::parse(read_json_file(file, kLimit_bytes));
-    // Exports of version 1.0 name the variables in an attribute, and a function is one problem.
-    std::vector<std::string> variables;
-    for (const json& attribute : root.at("experiment_attributes")) {
-      if (attribute.contains("variables")) {
-        const json names = json::parse(attribute.at("variables").get<std::string>());
-        variables = names.get<std::vector<std::string>>();
-      }
-    }
     for (const json& scenario : root.at("scenarios")) {
-      if (scenario.contains("variables")) {
-        variables = scenario.at("variables").get<std::vector<std::string>>();
-      }
-      const std::string problem = scenario.value("problem", root.at("function_name"));
+      const auto variables = scenario.at("variables").get<std::vector<std::string>>();
+      const std::string problem = scenario.at("problem");
       for (const json& run : scenario.at("runs")) {
         ImportedRun imported;
         imported.problem = problem;

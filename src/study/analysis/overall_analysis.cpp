@@ -44,8 +44,7 @@ struct Costs {
   std::vector<int> dimensions;
 };
 
-Costs calc_costs(const StudyPlan& plan, std::span<const ProblemResult> results,
-                 std::span<const CellOutcome> cells, double tolerance) {
+Costs calc_costs(const StudyPlan& plan, std::span<const CellOutcome> cells, double tolerance) {
   Costs costs;
   const auto optimizers = plan.optimizers.size();
   const auto replicates = static_cast<std::size_t>(plan.replicates);
@@ -60,15 +59,14 @@ Costs calc_costs(const StudyPlan& plan, std::span<const ProblemResult> results,
       for (std::size_t o = 0; o < optimizers; ++o) {
         start = std::min(start, get_cell(o).start_value);  // infinite for missing cells
         const CellOutcome& cell = get_cell(o);
-        for (const CurvePoint& point : results[p].exact_times ? *cell.trace : cell.curve) {
+        for (const CurvePoint& point : cell.trace) {
           best = std::min(best, point.value);
         }
       }
       const double target = calc_convergence_target(start, best, tolerance);
       std::vector<double> row;
       for (std::size_t o = 0; o < optimizers; ++o) {
-        const double cases =
-            calc_cost_to_target(make_trace(get_cell(o), results[p].exact_times), target);
+        const double cases = calc_cost_to_target(make_trace(get_cell(o)), target);
         row.push_back(cases / problem.schedule.cases);
       }
       costs.table.push_back(std::move(row));
@@ -91,7 +89,6 @@ CellOutcome make_missing(const StudyPlan& plan, const Cell& cell) {
   for (const std::int64_t budget : list_checkpoints(plan, cell.problem)) {
     outcome.curve.push_back({budget, kInfinity, std::nullopt});
   }
-  outcome.trace.emplace();
   return outcome;
 }
 
@@ -136,7 +133,7 @@ OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResu
   }
   overall.kappas = make_grid(least, most, kSteps);
   for (const double tolerance : kProfileTolerances) {
-    const Costs costs = calc_costs(plan, problems, cells, tolerance);
+    const Costs costs = calc_costs(plan, cells, tolerance);
     overall.data_profiles.push_back(
         {tolerance, calc_data_profiles(costs.table, costs.dimensions, overall.kappas)});
     overall.performance_profiles.push_back(

@@ -91,7 +91,7 @@ void set_best_and_start(std::span<const CellOutcome> cells, ProblemResult& resul
   for (const CellOutcome& cell : cells) {
     starts.push_back(cell.start_value);
     meet(result.has_front ? kInfinity : cell.value);
-    for (const CurvePoint& point : result.exact_times ? *cell.trace : cell.curve) {
+    for (const CurvePoint& point : cell.trace) {
       meet(point.value);
     }
   }
@@ -107,7 +107,7 @@ void add_running_times(const StudyPlan& plan, const ProblemResult& problem,
   std::vector<std::vector<TracePoint>> traces;
   std::vector<double> times;  // one per pair of run and target
   for (const CellOutcome* run : runs) {
-    traces.push_back(make_trace(*run, problem.exact_times));
+    traces.push_back(make_trace(*run));
     for (const double target : problem.targets) {
       times.push_back(calc_cost_to_target(traces.back(), target));
     }
@@ -183,11 +183,10 @@ Margin make_margin(const StudyPlan& plan, const StudyProblem& problem) {
           .optimum = description.optimum};
 }
 
-std::vector<TracePoint> make_trace(const CellOutcome& cell, bool exact) {
-  const std::vector<CurvePoint>& points = exact ? *cell.trace : cell.curve;
+std::vector<TracePoint> make_trace(const CellOutcome& cell) {
   std::vector<TracePoint> trace;
   double worst = -kInfinity;
-  for (auto point = points.rbegin(); point != points.rend(); ++point) {
+  for (auto point = cell.trace.rbegin(); point != cell.trace.rend(); ++point) {
     worst = std::max(worst, point->value);
     trace.push_back({static_cast<double>(point->budget), worst});
   }
@@ -222,8 +221,6 @@ ProblemResult analyze_problem(const StudyPlan& plan, std::size_t number,
   }
   result.checkpoints = list_checkpoints(plan, number);
   result.margin = make_margin(plan, problem);
-  result.exact_times =
-      std::ranges::all_of(cells, [](const CellOutcome& cell) { return cell.trace.has_value(); });
   set_best_and_start(cells, result);
   result.targets = make_targets(result.best_known, result.start);
   CommonFront common;

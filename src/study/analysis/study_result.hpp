@@ -10,10 +10,8 @@
 // Running times come from the trace of a run: its incumbents, each with the exact number of cases
 // when it was found and with its value on the test set (CellOutcome::trace). The running time to a
 // target is the number of cases from which on every incumbent is at the target or below. On
-// functions this is the first evaluation that reaches the target. Cells that version 1.0 recorded
-// have no trace. If a problem has such a cell, running times of all its cells come from the curves
-// and are as coarse as the checkpoints. For several objectives, curves, running times and profiles
-// use the weighted sum of the objectives.
+// functions this is the first evaluation that reaches the target. For several objectives, curves,
+// running times and profiles use the weighted sum of the objectives.
 //
 // Fixed targets on arms are evaluated differently. They model a user who stops a run early and
 // takes the design that is best on the validation set at that time (choices.hpp). A run reaches a
@@ -113,13 +111,11 @@ struct ProblemResult {
   bool has_front = false;
   std::vector<double> reference_point;  // of the hypervolume
   Margin margin;                        // of the values
-  // The optimum if it is known, else the best value on the test set in all traces or curves; may be
-  // infinite.
+  // The optimum if it is known, else the best value on the test set in all traces; may be infinite.
   double best_known = 0;
   double start = 0;  // median value of the start points
   std::vector<std::int64_t> checkpoints;
   std::vector<double> targets;
-  bool exact_times = false;  // running times come from traces; if false, from curves
   std::vector<OptimizerResult> optimizers;
   std::optional<FriedmanTest> friedman;    // blocks are replicates; empty for fewer than 2
   std::vector<PairResult> pairs;           // every two optimizers; Holm's correction over all pairs
@@ -192,10 +188,9 @@ OverallResult analyze_overall(const StudyPlan& plan, std::span<const ProblemResu
 // cases and of missed hypervolume have none, so there every difference counts.
 Margin make_margin(const StudyPlan& plan, const StudyProblem& problem);
 
-// Returns the quality that a run keeps: for each point of its trace (`exact`) or of its curve the
-// worst value on the test set from there on. The best value so far would be a selection on the test
-// set and profit from luck. With `exact`, the cell must have a trace.
-std::vector<TracePoint> make_trace(const CellOutcome& cell, bool exact);
+// Returns the quality that a run keeps: for each point of its trace the worst value on the test set
+// from there on. The best value so far would be a selection on the test set and profit from luck.
+std::vector<TracePoint> make_trace(const CellOutcome& cell);
 
 // Returns the optimizers, best first: by mean rank, then by the number of successes, then by
 // median, then in the plan's order. If cells are missing there are no ranks, and the median decides.

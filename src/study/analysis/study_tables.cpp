@@ -193,18 +193,16 @@ std::string make_friedman(const StudyResult& result) {
 
 std::string make_running_times(const StudyPlan& plan, const StudyResult& result) {
   std::string csv =
-      "problem,optimizer,target_share,target,reached,runs,expected_cases,lower_95,upper_95,"
-      "exact\n";
+      "problem,optimizer,target_share,target,reached,runs,expected_cases,lower_95,upper_95\n";
   for (const ProblemResult& problem : result.problems) {
     for (std::size_t o = 0; o < problem.optimizers.size(); ++o) {
       const OptimizerResult& one = problem.optimizers[o];
       for (std::size_t t = 0; t < one.running_times.size(); ++t) {
         const RunningTime& time = one.running_times[t];
-        csv +=
-            fmt::format("{},{},{},{},{},{},{},{},{},{}\n", quote_csv(problem.label), name(plan, o),
-                        number(kRunningTimeTargets[t]), number(time.target), time.reached,
-                        one.values.size(), number(time.expected), number(time.interval.lower),
-                        number(time.interval.upper), problem.exact_times ? 1 : 0);
+        csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", quote_csv(problem.label), name(plan, o),
+                           number(kRunningTimeTargets[t]), number(time.target), time.reached,
+                           one.values.size(), number(time.expected), number(time.interval.lower),
+                           number(time.interval.upper));
       }
     }
   }
@@ -424,7 +422,6 @@ std::string to_json(const StudyPlan& plan, const StudyResult& result) {
          {"unit", problem.quantity.unit},
          {"resolution", problem.margin.resolution},
          {"optimum", problem.margin.optimum ? json(*problem.margin.optimum) : json()},
-         {"exact_running_times", problem.exact_times},
          {"best_known", value_to_json(problem.best_known)},
          {"start", value_to_json(problem.start)},
          {"order", order},

@@ -21,7 +21,7 @@ bool meets(const StudyTarget& target, const CurvePoint& point) {
 // the validation set, which is done at checkpoints.
 bool uses_traces(const StudyPlan& plan, const ProblemResult& result) {
   const auto problem = std::ranges::find(plan.problems, result.label, &StudyProblem::label);
-  return result.exact_times && problem->loaded.tracking() == nullptr;
+  return problem->loaded.tracking() == nullptr;
 }
 
 TargetTime make_time(const std::string& stream, std::vector<Trial> trials) {
@@ -69,7 +69,7 @@ void add_targets(const StudyPlan& plan, std::span<const std::vector<const CellOu
       std::vector<Trial> trials;
       for (const CellOutcome* run : runs[o]) {
         trials.push_back(
-            make_target_trial(plan, target, *run, is_exact ? *run->trace : run->choices));
+            make_target_trial(plan, target, *run, is_exact ? run->trace : run->choices));
       }
       TargetTime time = make_time(get_stream(o), std::move(trials));
       time.kept = static_cast<int>(std::ranges::count_if(runs[o], [&](const CellOutcome* run) {
@@ -109,8 +109,8 @@ CellOutcome count_failures_only(CellOutcome cell, const CaseSets& sets) {
   for (CurvePoint& point : cell.curve) {
     point.value = share(point.failures);
   }
-  for (std::size_t i = 0; cell.trace && i < cell.trace->size(); ++i) {
-    (*cell.trace)[i].value = share((*cell.trace)[i].failures);
+  for (CurvePoint& point : cell.trace) {
+    point.value = share(point.failures);
   }
   return cell;
 }

@@ -214,23 +214,6 @@ std::vector<std::string> describe_raceless(const StudyPlan& plan) {
   return sentences;
 }
 
-// Names the problems whose running times are as coarse as the checkpoints.
-std::vector<std::string> describe_coarse_times(const StudyResult& result) {
-  std::vector<std::string> labels;
-  for (const ProblemResult& problem : result.problems) {
-    if (!problem.exact_times) {
-      labels.push_back(problem.label);
-    }
-  }
-  if (labels.empty()) {
-    return {};
-  }
-  return {
-      fmt::format("Running times on {} are only as exact as the checkpoints, because cells of "
-                  "version 1.0 do not record when each incumbent was found.",
-                  join_names(labels))};
-}
-
 // Returns the problems on which more candidates are judged than the plan says, as part of a sentence.
 std::string describe_wider_selections(const StudyPlan& plan) {
   std::vector<std::string> problems;
@@ -246,7 +229,7 @@ std::string describe_wider_selections(const StudyPlan& plan) {
 }
 
 std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResult& result) {
-  std::vector<std::string> sentences = describe_coarse_times(result);
+  std::vector<std::string> sentences;
   std::vector<std::string> failed;
   for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
     int runs = 0;
@@ -270,12 +253,10 @@ std::vector<std::string> describe_limits(const StudyPlan& plan, const StudyResul
         "{} of {} cells have not ended and {}.", result.missing.size(), list_cells(plan).size(),
         result.missing_left_out ? "are left out" : "count as if they had found nothing"));
   }
-  if (plan.selection.most > 0) {
-    sentences.push_back(
-        fmt::format("At most {} candidates of every run are judged on the validation set, "
-                    "recommendations included{}.",
-                    plan.selection.most, describe_wider_selections(plan)));
-  }
+  sentences.push_back(
+      fmt::format("At most {} candidates of every run are judged on the validation set, "
+                  "recommendations included{}.",
+                  plan.selection.most, describe_wider_selections(plan)));
   if (!plan.baselines) {
     sentences.push_back(
         "The baselines (the start, random search and a local search) were left out on request: "

@@ -107,9 +107,8 @@ bool test_progress(const StudyPlan& plan, const Cell& cell, const RunPlan& run,
         run, budget, incumbent == nullptr ? nullptr : &bench.get(find_design(*incumbent)),
         tolerance));
   }
-  outcome.trace.emplace();
   for (const Incumbent& incumbent : traced) {
-    outcome.trace->push_back(
+    outcome.trace.push_back(
         is_function
             ? CurvePoint{incumbent.cases, incumbent.objective, 0}
             : make_point(run, incumbent.cases, &bench.get(find_design(incumbent)), tolerance));

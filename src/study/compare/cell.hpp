@@ -59,9 +59,8 @@ struct CellOutcome {
   std::optional<std::uint64_t> start_failures;  // as CurvePoint::failures
   std::vector<CurvePoint> curve;                // the incumbents at the checkpoints
   // The run's incumbents, each with the number of cases when it was found (incumbents.hpp). Arms
-  // have at most kMostTraced of them, and those of the curve. Nothing for cells that version 1.0
-  // recorded.
-  std::optional<std::vector<CurvePoint>> trace;
+  // have at most kMostTraced of them, and those of the curve.
+  std::vector<CurvePoint> trace;
   // Only for plans with targets: the winner on the validation set if the run had ended at that
   // budget (choices.hpp).
   std::vector<CurvePoint> choices;

@@ -13,7 +13,6 @@
 #include "base/folder_checksums.hpp"
 #include "base/json_text.hpp"
 #include "base/text.hpp"
-#include "sim/tracking/engine_support.hpp"
 #include "study/journal/journal.hpp"
 #include "study/run/run_plan.hpp"
 
@@ -88,16 +87,6 @@ class FieldSearch {
 };
 
 // Compares fields in the order of cause and effect.
-// Returns the reason in the words of this version: version 1.0 wrote "it is at -nan rad and moves at
-// inf rad/s" where it is `now`.
-std::string use_present_words(const std::string& recorded, const std::string& now) {
-  const std::string_view place = std::string_view(now).substr(0, now.find(kNotFinite));
-  const bool is_old =
-      place.size() < now.size() && recorded.starts_with(place) &&
-      (recorded.find("nan ") != std::string::npos || recorded.find("inf ") != std::string::npos);
-  return is_old ? now : recorded;
-}
-
 std::optional<CellDifference> compare_records(const EvaluationRecord& a, const EvaluationRecord& b,
                                               std::string where) {
   FieldSearch search;
@@ -113,7 +102,7 @@ std::optional<CellDifference> compare_records(const EvaluationRecord& a, const E
   const Evaluation& after = b.evaluation;
   search.meet("case_errors", before.case_errors, after.case_errors);
   search.meet("status", before.status, after.status);
-  search.meet("reason", use_present_words(before.reason, after.reason), after.reason);
+  search.meet("reason", before.reason, after.reason);
   search.meet("failed_cases", before.failed_cases, after.failed_cases);
   search.meet("objectives", before.objectives, after.objectives);
   search.meet("constraint_values", before.constraint_values, after.constraint_values);
@@ -190,24 +179,6 @@ std::optional<CellDifference> compare_json(const std::string& recorded, const st
   return std::nullopt;
 }
 
-// Keys of cell.json that version 1.0 did not write.
-constexpr const char* kNewKeys[] = {"trace"};
-
-// Returns the text of a new cell.json without the keys that the recorded one cannot have. Two texts
-// that are no JSON are compared as they are.
-std::string leave_out_new_keys(const std::string& recorded, const std::string& now) {
-  const json before = json::parse(recorded, nullptr, false);
-  json after = json::parse(now, nullptr, false);
-  if (!before.is_object() || !after.is_object()) {
-    return now;
-  }
-  bool is_shorter = false;
-  for (const char* key : kNewKeys) {
-    is_shorter = (!before.contains(key) && after.erase(key) > 0) || is_shorter;
-  }
-  return is_shorter ? after.dump(1) + "\n" : now;
-}
-
 CellDifference compare_lines(const std::string& recorded, const std::string& now,
                              const std::string& file) {
   const auto before = split(recorded, '\n');
@@ -233,7 +204,7 @@ void compare_file(const std::filesystem::path& recorded, const std::filesystem::
     return;  // winner.toml is missing if there is no winner or no arm
   }
   const std::string before = read_checked_file(recorded / file, kFileLimit_bytes);
-  std::string after = read_checked_file(now / file, kFileLimit_bytes);
+  const std::string after = read_checked_file(now / file, kFileLimit_bytes);
   if (before == after) {
     comparison.files.push_back(file);
     return;
@@ -241,13 +212,6 @@ void compare_file(const std::filesystem::path& recorded, const std::filesystem::
   if (file.ends_with(".json")) {
     check_json_depth(before, (recorded / file).string());
     check_json_depth(after, (now / file).string());
-    if (file == "cell.json") {
-      after = leave_out_new_keys(before, after);
-    }
-    if (before == after) {
-      comparison.files.push_back(file);
-      return;
-    }
     try {
       comparison.difference = compare_json(before, after, file);
     } catch (const json::exception& error) {

@@ -27,8 +27,7 @@ struct CellComparison {
 
 // Compares two folders that each hold a finished cell. Evaluations are compared first, in the order
 // of their index, because threads decide their order in the journal. Judgements follow, then
-// result.json, winner.toml and cell.json. Keys that version 1.0 did not write into cell.json count
-// only if the recorded file has them. Throws Error{io} or Error{bad_data} that names a file
+// result.json, winner.toml and cell.json. Throws Error{io} or Error{bad_data} that names a file
 // which cannot be read.
 CellComparison compare_cells(const std::filesystem::path& recorded,
                              const std::filesystem::path& now);

@@ -69,10 +69,8 @@ std::string to_json(const CellOutcome& outcome) {
       {"curve", points_to_json(outcome.curve)},
       {"choices", points_to_json(outcome.choices)},
       {"front", outcome.front},
+      {"trace", points_to_json(outcome.trace)},
   };
-  if (outcome.trace) {
-    j["trace"] = points_to_json(*outcome.trace);
-  }
   return j.dump(1) + "\n";
 }
 
@@ -106,9 +104,7 @@ CellOutcome parse_cell(const std::string& text, const std::filesystem::path& fil
     outcome.start_failures = count_from_json(j.value("start_failures", json()));
     outcome.curve = points_from_json(j.at("curve"));
     outcome.choices = points_from_json(j.value("choices", json::array()));
-    if (j.contains("trace")) {
-      outcome.trace = points_from_json(j.at("trace"));
-    }
+    outcome.trace = points_from_json(j.at("trace"));
     outcome.front = j.at("front").get<std::vector<std::vector<double>>>();
     return outcome;
   } catch (const std::exception& error) {

@@ -69,18 +69,8 @@ void name_streams(StudyPlan& plan) {
   refuse_shared_streams(plan);
 }
 
-void name_streams_by_labels(StudyPlan& plan) {
-  for (StudyOptimizer& optimizer : plan.optimizers) {
-    optimizer.stream = optimizer.label;
-  }
-}
-
 void adopt_streams(const std::filesystem::path& recorded, StudyPlan& plan) {
   const auto optimizers = read_recorded_optimizers(recorded);
-  if (has_label_streams(optimizers)) {
-    name_streams_by_labels(plan);
-    return;
-  }
   for (StudyOptimizer& optimizer : plan.optimizers) {
     const auto known = std::ranges::find(optimizers, optimizer.label, &NamedOptimizer::label);
     optimizer.stream = known == optimizers.end() ? "" : known->stream;

@@ -1,7 +1,6 @@
 // Names the random streams of a plan's optimizers. The name of a stream depends on what the
 // optimizer is: its name, its options, its own schedule and its own settings. It does not depend on
-// the label, so another label does not change a result. Version 1.0 named the streams after the
-// labels. Plans that 1.0 recorded keep these names, so their cells have the same seeds.
+// the label, so another label does not change a result.
 #pragma once
 
 #include <filesystem>
@@ -15,11 +14,8 @@ namespace armwright {
 // been given the same stream.
 void name_streams(StudyPlan& plan);
 
-// Names all streams as version 1.0 did: after the labels.
-void name_streams_by_labels(StudyPlan& plan);
-
 // Takes over the streams of the recorded plan, for the optimizers that it has. The others get names
-// by the rule of the recorded plan. Throws Error{usage} if the file is not valid and Error{io} if it
+// as in name_streams(). Throws Error{usage} if the file is not valid and Error{io} if it
 // cannot be read.
 void adopt_streams(const std::filesystem::path& recorded, StudyPlan& plan);
 

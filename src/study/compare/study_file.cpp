@@ -128,51 +128,12 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
   }
 }
 
-// Returns the settings with which version 1.0 recorded an arm: its joints and controllers, and what
-// it proposed, which the problem's record in the study's folder has.
-std::vector<std::vector<std::string>> list_old_arms(const std::filesystem::path& folder,
-                                                    const std::string& label) {
-  std::vector<std::string> arm;
-  std::ranges::transform(kFirstArm, std::back_inserter(arm), &FirstSetting::setting);
-  const auto file = folder / make_problem_name(label);
-  if (path_exists(file)) {
-    const std::string text = read_file(file, kPlanLimit_bytes);
-    check_json_depth(text, file.string());
-    const auto recorded = nlohmann::json::parse(text, nullptr, false);
-    if (recorded.is_object()) {
-      std::ranges::move(list_proposals(recorded), std::back_inserter(arm));
-    }
-  }
-  std::vector<std::string> scalar = arm;
-  scalar.emplace_back(kScalarSolver);
-  return {{kScalarSolver}, std::move(arm), std::move(scalar)};
-}
-
-// Loads the problem as it was when the plan was made: on another SIMD level, because "auto" may
-// choose another one on this machine, or as version 1.0 recorded it: as the plain form of a function,
-// with the scalar solver of the inverse kinematics, or with ideal joints, controllers that start
-// empty, and its proposals. `folder` is that of the plan. Returns false if none of these gives the
-// recorded configuration.
-bool load_as_recorded(const NamedProblem& named, const std::filesystem::path& folder,
-                      StudyProblem& problem) {
-  std::vector<std::vector<std::string>> variants;
-  if (problem.loaded.function) {
-    variants = {{kPlainForm}};
-  } else if (problem.loaded.tracking()) {
-    variants = list_old_arms(folder, problem.label);
-    const std::vector<std::vector<std::string>> old = variants;
-    for (const std::string& level : supported_simd_names()) {
-      const std::string simd = "physics.simd=" + level;
-      variants.push_back({simd});
-      for (std::vector<std::string> settings : old) {
-        settings.push_back(simd);
-        variants.push_back(std::move(settings));
-      }
-    }
-  }
-  for (const std::vector<std::string>& variant : variants) {
+// Loads the problem on the SIMD level on which the plan was made, because "auto" may choose another
+// one on this machine. Returns false if no level gives the recorded configuration.
+bool load_as_recorded(const NamedProblem& named, StudyProblem& problem) {
+  for (const std::string& level : supported_simd_names()) {
     std::vector<std::string> settings = problem.settings;
-    settings.insert(settings.end(), variant.begin(), variant.end());
+    settings.push_back("physics.simd=" + level);
     try {
       LoadedProblem loaded = load_problem(named.name, settings);
       if (calc_configuration_hash(loaded) == named.configuration_sha256) {
@@ -180,7 +141,7 @@ bool load_as_recorded(const NamedProblem& named, const std::filesystem::path& fo
         return true;
       }
     } catch (const Error&) {
-      return false;  // the engine has no SIMD, or the function has no plain form
+      return false;  // the engine has no SIMD
     }
   }
   return false;
@@ -201,9 +162,7 @@ void record_description(StudyProblem& problem) {
 }
 
 // With `reads_programs`, takes the files of programs as they are recorded, because they may be gone.
-// `folder` is that of the plan's file, or empty.
-void load_problems(const RawPlan& raw, const std::filesystem::path& folder, bool reads_programs,
-                   StudyPlan& plan) {
+void load_problems(const RawPlan& raw, bool reads_programs, StudyPlan& plan) {
   std::vector<std::string> labels;
   for (const NamedProblem& named : raw.problems) {
     StudyProblem problem;
@@ -223,7 +182,7 @@ void load_problems(const RawPlan& raw, const std::filesystem::path& folder, bool
     set_schedule(named.schedule ? named.schedule : raw.schedule, problem);
     std::string hash = calc_configuration_hash(problem.loaded);
     if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash &&
-        load_as_recorded(named, folder, problem)) {
+        problem.loaded.tracking() != nullptr && load_as_recorded(named, problem)) {
       hash = named.configuration_sha256;
     }
     if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash) {
@@ -320,10 +279,7 @@ void load_optimizers(const RawPlan& raw, std::span<const OptimizerRow> rows, boo
   bool has_start = false, has_random = false, has_local = false;
   for (const NamedOptimizer& named : raw.optimizers) {
     plan.optimizers.push_back(load_study_optimizer(named, rows, reads_plugins));
-    OptimizerRow& row = plan.optimizers.back().row;
-    if (raw.is_recorded && named.description.empty()) {
-      row.description.clear();  // version 1.0 recorded none of plugins
-    }
+    const OptimizerRow& row = plan.optimizers.back().row;
     has_start = has_start || row.name == kStartBaseline;
     has_random = has_random || row.name == kRandomBaseline;
     has_local = has_local || row.capabilities.local;
@@ -437,17 +393,16 @@ void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan) {
   }
 }
 
-void keep_old_problems(const std::filesystem::path& recorded, StudyPlan& plan) {
+void keep_simd_levels(const std::filesystem::path& recorded, StudyPlan& plan) {
   StudyPlan ignored;
   const RawPlan raw = read_study_file(recorded, ignored);
   for (StudyProblem& problem : plan.problems) {
     const auto found = std::ranges::find(raw.problems, problem.label, &NamedProblem::label);
-    const bool may_be_old = problem.loaded.function || problem.loaded.tracking() != nullptr;
-    if (found != raw.problems.end() && may_be_old &&
+    if (found != raw.problems.end() && problem.loaded.tracking() != nullptr &&
         found->configuration_sha256 != calc_configuration_hash(problem.loaded)) {
       NamedProblem named = *found;
       named.name = problem.name;
-      load_as_recorded(named, recorded.parent_path(), problem);
+      load_as_recorded(named, problem);
     }
   }
   load_methods(plan);
@@ -504,7 +459,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
   plan.baselines = plan.baselines && request.baselines;
   check_size(raw, plan);
   const bool reads_programs = !plan.programs.may_describe && request.plugins != PluginUse::run;
-  load_problems(raw, record, reads_programs, plan);
+  load_problems(raw, reads_programs, plan);
   if (!plan.programs.may_describe) {
     std::ranges::move(list_programs(plan.problems), std::back_inserter(recorded));
   }
@@ -517,11 +472,7 @@ StudyPlan make_study_plan(const StudyRequest& request) {
                 "training cases every optimizer may simulate on a problem");
   }
   load_optimizers(raw, request.rows, reads_plugins, plan);
-  if (raw.has_label_streams) {
-    name_streams_by_labels(plan);
-  } else {
-    name_streams(plan);
-  }
+  name_streams(plan);
   load_methods(plan);
   check_targets(plan);
   if (plan.name.empty()) {

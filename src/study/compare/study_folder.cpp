@@ -83,13 +83,9 @@ std::string make_targets(const StudyPlan& plan) {
   return text;
 }
 
-// Returns the keys of an optimizer that not every plan has. A stream that is the label is left out,
-// as in plans of version 1.0.
+// Returns the keys of an optimizer that not every plan has.
 std::string make_method(const StudyPlan& plan, const StudyOptimizer& optimizer) {
-  std::string text;
-  if (optimizer.stream != optimizer.label) {
-    text += fmt::format("stream = {}\n", quote_setting(optimizer.stream));
-  }
+  std::string text = fmt::format("stream = {}\n", quote_setting(optimizer.stream));
   if (!optimizer.schedule && std::ranges::any_of(plan.problems, &StudyProblem::own_schedules)) {
     text += fmt::format("own_schedule = {}\n", quote_setting(to_text(optimizer.own_schedule)));
   }
@@ -117,15 +113,14 @@ std::string make_body(const StudyPlan& plan) {
   std::string text = fmt::format(
       "name = {}\ntitle = {}\nseed = {}\nreplicates = {}\nbudget = {}\nstart_spread = {}\n"
       "constraint_tolerance = {}\ncheckpoints = {}\n{}final_engine = {}\nbaselines = "
-      "{}\n{}\n[selection]\nlast = {}\nbest = {}\n{}{}",
+      "{}\n{}\n[selection]\nlast = {}\nbest = {}\nmost = {}\n{}",
       quote_setting(plan.name), quote_setting(plan.title), plan.seed, plan.replicates, plan.budget,
       format_toml_number(plan.start_spread), format_toml_number(plan.constraint_tolerance),
       plan.checkpoints,
       plan.first_checkpoint > 1 ? fmt::format("first_checkpoint = {}\n", plan.first_checkpoint)
                                 : "",
       quote_setting(plan.final_engine), plan.baselines ? "true" : "false", make_questions(plan),
-      plan.selection.last, plan.selection.best,
-      plan.selection.most > 0 ? fmt::format("most = {}\n", plan.selection.most) : "",
+      plan.selection.last, plan.selection.best, plan.selection.most,
       plan.judge_along ? "along = true\n" : "");
   for (const StudyProblem& problem : plan.problems) {
     const CaseSets& sets = problem.loaded.sets;
@@ -250,8 +245,7 @@ void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan) {
   if (plan.baselines) {
     keep_baselines(folder / kPlanFile, plan);
   }
-  keep_selection(folder / kPlanFile, plan);
-  keep_old_problems(folder / kPlanFile, plan);
+  keep_simd_levels(folder / kPlanFile, plan);
   adopt_streams(folder / kPlanFile, plan);
   adopt_descriptions(folder / kPlanFile, plan);
 }

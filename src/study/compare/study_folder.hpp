@@ -64,10 +64,8 @@ void uncover_unfinished(const StudyPlan& plan, std::span<const Cell> cells,
 bool is_study_folder(const std::filesystem::path& path);
 // Throws Error{usage} if the folder does not exist or is not a study's.
 void check_study_folder(const std::filesystem::path& folder);
-// Adds to `plan` the baselines that the folder's recorded plan has, and keeps its rules: the
-// candidates that are judged (keep_selection()), the plain form of functions and the solver of
-// arms where version 1.0 recorded them (keep_old_problems()), and the random streams of the
-// optimizers (adopt_streams()). Descriptions of plugins stay absent where version 1.0 recorded none.
+// Adds to `plan` the baselines that the folder's recorded plan has, and keeps its labels, its SIMD
+// levels (keep_simd_levels()) and the random streams of the optimizers (adopt_streams()).
 // Does nothing if the folder is not a study's. To be called before the constructor of StudyFolder.
 void adopt_recorded(const std::filesystem::path& folder, StudyPlan& plan);
 // Returns the plan that a study's folder records, to be read. Starts no plugin and opens none, so

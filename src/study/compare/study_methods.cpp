@@ -81,18 +81,6 @@ LoadedProblem load_method(const StudyProblem& problem, const StudyOptimizer& opt
   if (resolved.contains("physics") && resolved["physics"].contains("simd")) {
     settings.push_back("physics.simd=" + resolved["physics"]["simd"].get<std::string>());
   }
-  if (problem.loaded.function && problem.loaded.function->instance == 0) {
-    settings.emplace_back(kPlainForm);  // the plan may have been recorded before 2.0
-  }
-  if (problem.loaded.tracking() != nullptr &&
-      problem.loaded.tracking()->setup().task().solver == NumericSolver::scalar) {
-    settings.emplace_back(kScalarSolver);  // likewise
-  }
-  for (const FirstSetting& first : kFirstArm) {
-    if (problem.loaded.tracking() != nullptr && !resolved.contains(json::json_pointer(first.key))) {
-      settings.emplace_back(first.setting);
-    }
-  }
   std::ranges::move(list_proposals(resolved), std::back_inserter(settings));
   LoadedProblem loaded = load_for_method(problem, optimizer, settings, programs);
   if (get_judged_perturbation(loaded) != get_judged_perturbation(problem.loaded)) {

@@ -125,7 +125,7 @@ Selection choose_selection(const StudyPlan& plan, const StudyProblem& problem) {
   Selection selection = plan.selection;
   if (description.objectives.size() > 1 || !description.constraints.empty()) {
     selection.last = std::max(selection.last, Selection{}.last);
-    selection.most = selection.most > 0 ? selection.last + selection.best : 0;
+    selection.most = selection.last + selection.best;
   }
   return selection;
 }
@@ -214,9 +214,7 @@ StudyCost calc_cost(const StudyPlan& plan) {
     const StudyProblem& problem = plan.problems[p];
     const CaseSets& sets = problem.loaded.sets;
     const bool fronts = problem.loaded.problem->description().objectives.size() > 1;
-    const Selection selection = choose_selection(plan, problem);
-    const std::int64_t judged =
-        selection.most > 0 ? selection.most : selection.last + selection.best;
+    const std::int64_t judged = choose_selection(plan, problem).most;
     const auto tested = static_cast<std::int64_t>(list_checkpoints(plan, p).size());
     cost.cells += runs;
     cost.training += runs * plan.budget;

@@ -168,15 +168,9 @@ void check_plan_hash(const std::filesystem::path& path);
 // file or a baseline cannot be loaded, Error{io} if a file cannot be read.
 void keep_baselines(const std::filesystem::path& recorded, StudyPlan& plan);
 
-// Gives `plan` the rule of version 1.0 for the candidates that are judged (Selection::most = 0) if
-// the recorded plan has it. A plan with the defaults of now gets the defaults of then. Throws
-// Error{usage} or Error{io} if the file cannot be read.
-void keep_selection(const std::filesystem::path& recorded, StudyPlan& plan);
-
-// Gives functions of `plan` the plain form, and arms the scalar solver of the numeric inverse
-// kinematics, where the recorded plan has them: version 1.0 had no others. Throws as
-// keep_baselines().
-void keep_old_problems(const std::filesystem::path& recorded, StudyPlan& plan);
+// Gives arms of `plan` the SIMD level of the recorded plan, where "auto" means another one on this
+// machine. Throws as keep_baselines().
+void keep_simd_levels(const std::filesystem::path& recorded, StudyPlan& plan);
 
 // Content of a study's file that needs no loading of problems and optimizers.
 struct StudyOutline {

@@ -148,9 +148,7 @@ const Setting<std::string> kOptimizerEntryOwnSchedule{
     "own_schedule", kNoDefault,
     "in a resolved plan: schedule of this optimizer on problems whose schedule is own"};
 const Setting<std::string> kOptimizerEntryStream{
-    "stream", "",
-    "in a resolved plan: name of the optimizer's random streams (a plan of version 1.0 lacks it: "
-    "the label)"};
+    "stream", "", "in a resolved plan: name of the optimizer's random streams"};
 const SettingTable kOptimizerEntrySettings{
     .key = "optimizer",
     .is_array = true,
@@ -258,14 +256,10 @@ NamedOptimizer read_optimizer_entry(const ConfigTable& table) {
   return optimizer;
 }
 
-// A resolved plan states `last` and `best`. It lacks `most` if version 1.0 recorded it.
-Selection read_selection(const ConfigTable& table, bool is_resolved) {
+Selection read_selection(const ConfigTable& table) {
   Selection selection{.last = table.get(kSelectionLast), .best = table.get(kSelectionBest)};
   selection.most = table.get(kSelectionMost);
-  if (!table.has(kSelectionMost) && is_resolved) {
-    selection.most = 0;
-  } else if (!table.has(kSelectionMost) &&
-             (table.has(kSelectionLast) || table.has(kSelectionBest))) {
+  if (!table.has(kSelectionMost) && (table.has(kSelectionLast) || table.has(kSelectionBest))) {
     selection.most = selection.last + selection.best;
   }
   return selection;
@@ -305,7 +299,14 @@ RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan) {
   plan.final_engine = table.get(kStudyFinalEngine);
   plan.baselines = table.get(kStudyBaselines);
   const ConfigTable selection = table.get_table_or_empty(kSelectionSettings);
-  plan.selection = read_selection(selection, table.has(kStudyPlanHash));
+  if (raw.is_recorded && !selection.has(kSelectionMost)) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("{}: version 1.0 of armwright recorded this plan, and this version reads "
+                    "none of its studies; use version 1.0 for it, or begin a new study",
+                    sanitize(file.string())));
+  }
+  plan.selection = read_selection(selection);
   plan.judge_along = selection.get(kSelectionAlong);
   read_targets(table, plan);
   raw.schedule = read_study_schedule_key(table, kStudySchedule);
@@ -324,7 +325,6 @@ RawPlan read_study_file(const std::filesystem::path& file, StudyPlan& plan) {
   for (const ConfigTable& optimizer : table.get_tables_or_empty(kOptimizerEntrySettings)) {
     raw.optimizers.push_back(read_optimizer_entry(optimizer));
   }
-  raw.has_label_streams = raw.is_recorded && has_label_streams(raw.optimizers);
   table.refuse_unknown();
   return raw;
 }
@@ -345,23 +345,6 @@ std::vector<NamedOptimizer> read_recorded_optimizers(const std::filesystem::path
     optimizers.push_back(read_optimizer_entry(table));
   }
   return optimizers;
-}
-
-bool has_label_streams(std::span<const NamedOptimizer> optimizers) {
-  return std::ranges::all_of(optimizers,
-                             [](const NamedOptimizer& one) { return one.stream.empty(); });
-}
-
-void keep_selection(const std::filesystem::path& recorded, StudyPlan& plan) {
-  constexpr Selection kFirstDefault{.last = 5, .best = 5, .most = 0};  // of version 1.0
-  const ConfigTable table = ConfigTable::load(study_settings(), recorded);
-  if (table.get_table_or_empty(kSelectionSettings).has(kSelectionMost)) {
-    return;
-  }
-  if (plan.selection == StudyPlan{}.selection) {
-    plan.selection = kFirstDefault;
-  }
-  plan.selection.most = 0;
 }
 
 std::string read_study_title(const std::string& file) {

@@ -25,10 +25,9 @@ struct NamedOptimizer {
   std::optional<Schedule> schedule = {};
   std::vector<std::string> settings = {};
   // A resolved plan has these two for a plugin and for an optimizer of the program that made it.
-  // Version 1.0 recorded no description of plugins.
   std::string description = {};
   std::vector<std::string> inputs = {};  // "NAME HASH"
-  // A resolved plan has these two; plans of version 1.0 do not.
+  // A resolved plan has these two.
   std::optional<Schedule> own_schedule = {};
   std::string stream = {};
   std::string place = {};   // of the name, "FILE:LINE: KEY"; empty if a flag gives it
@@ -52,8 +51,7 @@ struct RawPlan {
   std::vector<std::string> settings;  // of every problem; a problem's own settings replace them
   std::vector<std::string> last_settings;  // of every problem; they replace all others
   std::optional<StudySchedule> schedule;
-  bool is_recorded = false;        // the file is a resolved plan: it has a plan_sha256
-  bool has_label_streams = false;  // the file is a plan that version 1.0 recorded
+  bool is_recorded = false;  // the file is a resolved plan: it has a plan_sha256
 };
 
 // Reads the file into the returned plan and, for all that needs no loading, into `plan`. Throws
@@ -65,9 +63,5 @@ std::map<std::string, std::string> read_inputs(std::span<const std::string> inpu
 
 // Returns the optimizers of a resolved plan. Throws as read_study_file().
 std::vector<NamedOptimizer> read_recorded_optimizers(const std::filesystem::path& file);
-
-// Returns whether the optimizers of a resolved plan have the random streams of version 1.0, which
-// are named after the labels. Version 1.0 did not record them.
-bool has_label_streams(std::span<const NamedOptimizer> optimizers);
 
 }  // namespace armwright

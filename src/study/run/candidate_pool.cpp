@@ -173,7 +173,7 @@ std::vector<Candidate> CandidatePool::thin_front() const {
 void CandidatePool::limit_places(const std::vector<Candidate>& best,
                                  std::vector<Candidate>& chosen) const {
   const auto most = static_cast<std::size_t>(selection_.most);
-  for (std::size_t i = chosen.size(); most > 0 && i > 0 && chosen.size() > most; --i) {
+  for (std::size_t i = chosen.size(); i > 0 && chosen.size() > most; --i) {
     if (!is_among(best, chosen[i - 1])) {
       chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(i - 1));
     }

@@ -97,21 +97,19 @@ void warn_of_lost_journal(const RunFolder& folder, const RunResult& result, RunO
   }
 }
 
-// Sets why and how early the run ended. Results of runs that version 1.0 began keep their bytes, so
-// they do not get the fields that it did not know.
-void describe_end(const RunPlan& plan, const RunEvaluator& evaluator, RunResult& result) {
+// Sets why and how early the run ended.
+void describe_end(const RunEvaluator& evaluator, RunResult& result) {
   result.end_reason = evaluator.budget_spent() ? "budget" : "optimizer finished";
-  if (!evaluator.budget_spent() && plan.selection.most > 0) {
+  if (!evaluator.budget_spent()) {
     result.unused_evaluations = std::max<std::int64_t>(0, evaluator.remaining());
     result.end_detail = evaluator.end_detail();
   }
 }
 
-// Throws OptimizerFailure if the optimizer has returned at once. Such a run of version 1.0 has ended
-// without a failure, and stays as it is.
+// Throws OptimizerFailure if the optimizer has returned at once.
 void check_not_idle(const RunPlan& plan, const RunEvaluator& evaluator) {
-  const bool is_idle = evaluator.counts().evaluations == 0 && !evaluator.stopped() &&
-                       evaluator.remaining() > 0 && plan.selection.most > 0;
+  const bool is_idle =
+      evaluator.counts().evaluations == 0 && !evaluator.stopped() && evaluator.remaining() > 0;
   if (is_idle) {
     const std::string& detail = evaluator.end_detail();
     throw OptimizerFailure(
@@ -125,17 +123,16 @@ void check_not_idle(const RunPlan& plan, const RunEvaluator& evaluator) {
 // Returns whether the start is judged beside the winner, and the winner confirmed. Nobody asked for a comparison's cell, the
 // cases of a told run cost the caller, and an identification starts with a fit of its own.
 bool judges_start(const RunRequest& request, const RunPlan& plan) {
-  return request.derived == DerivedFiles::all && plan.selection.most > 0 &&
-         !plan.selection.evaluated_only && find_identification(*plan.problem.problem) == nullptr;
+  return request.derived == DerivedFiles::all && !plan.selection.evaluated_only &&
+         find_identification(*plan.problem.problem) == nullptr;
 }
 
 // Measures what the winner of an arm does beside its errors at rest, on the cases of its test.
-// Returns false if stopped. A comparison's cells and told runs are not simulated again. Runs that
-// version 1.0 began do not get the fields that it did not know.
+// Returns false if stopped. A comparison's cells and told runs are not simulated again.
 bool measure_winner(const RunRequest& request, const RunPlan& plan, StopSignal& stop,
                     RunObserver& observer, RunResult& result) {
   const TrackingProblem* const arm = plan.problem.tracking();
-  if (arm == nullptr || !result.winner || plan.selection.most == 0) {
+  if (arm == nullptr || !result.winner) {
     return true;
   }
   const ArmDesign design = arm->make_design(result.judged[*result.winner].candidate.x);
@@ -188,9 +185,6 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
   const auto optimizer = plan.optimizer.make(plan.options);
   optimizer->check_problem(plan.problem.problem->description());
   plan.optimizer.input_hashes.merge(optimizer->list_inputs());
-  if (has_first_selection(request.folder)) {
-    plan.selection.most = 0;
-  }
   const RunFolder folder(request.folder, request.root, plan, request.command_line);
   const bool continues = folder.continued_budget() > 0;
   if (!continues && are_derived_files_there(folder, plan, request.derived)) {
@@ -267,7 +261,7 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
     if (!has_begun) {
       begin();
     }
-    describe_end(plan, evaluator, result);
+    describe_end(evaluator, result);
   }
   evaluator.take_late_recommendations();
   result.choice = evaluator.choice();

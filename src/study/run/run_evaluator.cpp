@@ -123,7 +123,7 @@ void RunEvaluator::recommend(std::span<const double> x) {
 
 void RunEvaluator::take_late_recommendations() {
   const std::size_t dimension = problem().variables.size();
-  if (plan_.selection.most == 0 || !budget_spent_ || (journal_ended_ && !recorded_late_)) {
+  if (!budget_spent_ || (journal_ended_ && !recorded_late_)) {
     return;
   }
   if (!recorded_late_) {

@@ -100,7 +100,11 @@ json read_manifest(const std::filesystem::path& file) {
                       "--new",
                       manifest.at("format").dump(), kManifestFormat));
     }
-    manifest.at("configuration");
+    if (!manifest.at("configuration").at("run").at("selection").contains("most")) {
+      throw std::runtime_error(
+          "version 1.0 of armwright began this run, and this version reads none of its runs; use "
+          "version 1.0 for it, or choose another folder with --out or --new");
+    }
     manifest.at("build").get<std::map<std::string, std::string>>();
     manifest["has_checksums"] = manifest.value("has_checksums", false);
     return manifest;
@@ -207,21 +211,6 @@ std::string describe_command(const json& manifest) {
   }
 }
 
-// Returns advice if the recorded run has the plain form of a function and the present one an
-// instance, else an empty text.
-std::string explain_instance(const json& recorded, const json& now) {
-  const json::json_pointer instance("/problem/function/instance");
-  return recorded.contains("/problem/function"_json_pointer) && !recorded.contains(instance) &&
-                 now.contains(instance)
-             ? "\nThe run has the plain form of the function, which was the only form before "
-               "version 2.0; to resume this run, pass --set function.instance=0"
-             : "";
-}
-
-}  // namespace
-
-namespace {
-
 // Returns the configuration with the budget of the recorded one, and with the pace with which the
 // recorded run began (keep_pace()).
 json take_recorded_budget(const json& recorded, json now, const OptimizerRow& optimizer) {
@@ -286,10 +275,9 @@ RunFolder::RunFolder(const std::filesystem::path& path, const std::filesystem::p
     throw Error(
         ErrorKind::usage,
         fmt::format("{} holds a run with another configuration:\n  {}{}\nResume it with the "
-                    "recorded configuration, or use --new or --out for another folder{}{}{}",
+                    "recorded configuration, or use --new or --out for another folder{}{}",
                     path.string(), join(changes, "\n  "), describe_command(manifest),
-                    explain_budget(before, plan), explain_simd(recorded, now),
-                    explain_instance(recorded, now)));
+                    explain_budget(before, plan), explain_simd(recorded, now)));
   }
   warnings_ =
       describe_build_changes(manifest["build"].get<std::map<std::string, std::string>>(), "run");
@@ -350,16 +338,6 @@ void cover_run(const Folder& folder, bool has_ended) {
   checksums.save();
 }
 
-bool has_first_selection(const std::filesystem::path& folder) {
-  const auto file = folder / "manifest.json";
-  if (!path_exists(file)) {
-    return false;
-  }
-  const json manifest = read_manifest(file);
-  const json::json_pointer selection("/configuration/run/selection");
-  return manifest.contains(selection) && !manifest[selection].contains("most");
-}
-
 void keep_pace(const std::filesystem::path& folder, RunPlan& plan) {
   const std::string& pace = plan.optimizer.pace_option;
   const auto file = folder / "manifest.json";
@@ -389,49 +367,6 @@ void keep_pace(const std::filesystem::path& folder, RunPlan& plan) {
     }
   }
   plan.options = Options::parse(plan.optimizer.name, plan.optimizer.options, texts);
-}
-
-std::vector<std::string> find_old_settings(const std::filesystem::path& folder,
-                                           const LoadedProblem& problem,
-                                           std::span<const std::string> settings) {
-  const TrackingProblem* const arm = problem.tracking();
-  const bool has_instance = problem.function && problem.function->instance != 0;
-  if ((!has_instance && arm == nullptr) || !has_first_selection(folder)) {
-    return {};
-  }
-  const json recorded = find(read_manifest(folder / "manifest.json"), "/configuration/problem");
-  const auto lacks = [&](const char* key) { return find(recorded, key).is_null(); };
-  std::vector<std::string> old;
-  const auto add = [&](bool is_needed, const std::string& needed) {
-    const std::string key = needed.substr(0, needed.find('='));
-    const bool is_named = std::ranges::any_of(settings, [&](const std::string& setting) {
-      const std::size_t begin = setting.find_first_not_of(' ');
-      const std::size_t end = setting.find_first_of(" =", begin);
-      return begin != std::string::npos && setting.substr(begin, end - begin) == key;
-    });
-    if (is_needed && !is_named) {
-      old.push_back(needed);
-    }
-  };
-  if (arm == nullptr) {
-    add(find(recorded, "/function/name") == problem.function->name && lacks("/function/instance"),
-        kPlainForm);
-    return old;
-  }
-  if (!find(recorded, "/robot").is_object()) {
-    return old;
-  }
-  const bool is_numeric = !arm->setup().has_closed_form();
-  add(is_numeric && arm->setup().task().solver == NumericSolver::lanes && lacks("/task/solver"),
-      kScalarSolver);
-  const json now = json::parse(problem.resolved_json);
-  for (const FirstSetting& first : kFirstArm) {
-    add(lacks(first.key) && !find(now, first.key).is_null(), first.setting);
-  }
-  for (const std::string& setting : list_proposals(recorded)) {
-    add(true, setting);
-  }
-  return old;
 }
 
 namespace {
@@ -493,7 +428,7 @@ RunPlan load_recorded_plan(const std::filesystem::path& folder) {
     const json& selection = run.at("selection");
     plan.selection = {.last = selection.at("last").get<int>(),
                       .best = selection.at("best").get<int>(),
-                      .most = selection.value("most", 0),
+                      .most = selection.at("most").get<int>(),
                       .evaluated_only = selection.value("evaluated_only", false)};
   });
   return plan;

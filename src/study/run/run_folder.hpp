@@ -95,36 +95,6 @@ void cover_run(const Folder& folder, bool has_ended);
 // has set the option. Throws Error{bad_data} if the manifest is damaged, and Error{io}.
 void keep_pace(const std::filesystem::path& folder, RunPlan& plan);
 
-// Returns whether the folder holds a run whose recorded plan has no Selection::most. Version 1.0
-// began such a run, which keeps the rule of that version. Throws Error{bad_data} if the manifest is
-// damaged, and Error{io}.
-bool has_first_selection(const std::filesystem::path& folder);
-
-// The settings with which a problem is what it was in version 1.0: the plain form of a function, and
-// the solver of the numeric inverse kinematics.
-inline constexpr const char* kPlainForm = "function.instance=0";
-inline constexpr const char* kScalarSolver = "task.solver=scalar";
-// Likewise of any arm: ideal joints of a file that is read strictly, and controllers that start empty.
-// A recorded configuration of version 1.0 lacks the keys.
-struct FirstSetting {
-  const char* key;      // a JSON pointer
-  const char* setting;  // what the key's absence means
-};
-inline constexpr FirstSetting kFirstArm[] = {
-    {"/robot/dynamics", "robot.dynamics=false"},
-    {"/robot/plant", "robot.plant=\"\""},
-    {"/robot/repair", "robot.repair=false"},
-    {"/control/start", "control.start=empty"},
-    {"/training/failure_rule", "training.failure_rule=thesis"}};
-
-// Returns the settings that the run in the folder needs in addition to `settings`, with which
-// `problem` was loaded: those above that make the problem what it was in version 1.0, and what it
-// proposed then (list_proposals()). The list is empty unless version 1.0 began the run, and has
-// no key that `settings` name. Throws Error{bad_data} if the manifest is damaged, and Error{io}.
-std::vector<std::string> find_old_settings(const std::filesystem::path& folder,
-                                           const LoadedProblem& problem,
-                                           std::span<const std::string> settings);
-
 // Returns the problem that the run in the folder has recorded. Starts no program. Throws as
 // load_recorded_plan().
 LoadedProblem load_problem_of_run(const std::filesystem::path& folder);

@@ -318,13 +318,13 @@ std::string to_json(const RunPlan& plan) {
       {"seed", plan.seed},
       {"budget", plan.budget},
       {"schedule", {{"kind", to_string(plan.schedule.kind)}, {"cases", plan.schedule.cases}}},
-      {"selection", {{"last", plan.selection.last}, {"best", plan.selection.best}}},
+      {"selection",
+       {{"last", plan.selection.last},
+        {"best", plan.selection.best},
+        {"most", plan.selection.most}}},
   };
   if (plan.schedule.kind == Schedule::Kind::growing) {
     run["schedule"]["factor"] = plan.schedule.factor;
-  }
-  if (plan.selection.most > 0) {  // absent in plans of version 1.0
-    run["selection"]["most"] = plan.selection.most;
   }
   if (plan.selection.evaluated_only) {
     run["selection"]["evaluated_only"] = true;

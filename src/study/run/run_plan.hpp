@@ -22,8 +22,7 @@ struct Selection {
                   // change, the last N bests of generations and recommendations
   int best = 5;   // the N with the best training objective besides
   // The places of the pool: at most this many candidates are judged, recommendations included. If
-  // there are more, the oldest of the last ones lose their places. 0 is the rule of version 1.0: no
-  // such limit, and recommendations after the end of the budget do not count.
+  // there are more, the oldest of the last ones lose their places.
   int most = 45;
   // Whether recommended decision vectors that were never evaluated are not judged. This holds for
   // ask and tell, where a person or another system makes each evaluation.

@@ -376,17 +376,12 @@ std::string to_json(const RunResult& result) {
     j["winner"] = {{"candidate", *result.winner},
                    {"test", evaluation_to_json(result.test)},
                    {"test_summary", summary_to_json(result.test_summary)}};
-    const std::vector<std::string> faults = list_faults(result);
-    if (result.start ||
-        !faults.empty()) {  // results of version 1.0 without faults keep their bytes
-      j["winner"]["faults"] = faults;
-    }
+    j["winner"]["faults"] = list_faults(result);
     if (result.start) {
       j["start"] = {{"test", evaluation_to_json(result.start->test)},
                     {"test_summary", summary_to_json(summarize_start(result))},
                     {"is_worse_than_winner", result.start->is_worse_than_winner}};
     }
-    // Results of version 1.0 have none of these.
     if (result.test_motion) {
       j["winner"]["test_motion"] = motion_to_json(*result.test_motion);
     }

@@ -83,17 +83,6 @@ TEST_F(Import, NamesFileAndRowOfWhatItCannotRead) {
   expect_refused({}, ErrorKind::bad_data, "row 1: it has no column 'replicate'");
 }
 
-TEST_F(Import, ReadsTheIohFormOfVersion1) {
-  std::filesystem::remove(folder_ / "runs.csv");
-  std::ofstream(folder_ / "IOHprofiler_f1_p.json")
-      << R"({"function_name":"p","algorithm":{"name":"l"},"experiment_attributes":[{"variables":"[\"a\"]"}],
-            "scenarios":[{"dimension":1,"runs":[{"instance":1,"best":{"evals":1,"y":2,"x":[3]}}]}]})";
-  const ImportedRun best = import_best(folder_.path(), {});
-  EXPECT_EQ(best.problem, "p");
-  EXPECT_THAT(best.variables, testing::ElementsAre("a"));
-  EXPECT_THAT(best.x, testing::ElementsAre(3));
-}
-
 TEST_F(Import, TellsTheProblemsOfOneIohFunctionApart) {
   std::filesystem::remove(folder_ / "runs.csv");
   std::ofstream(folder_ / "IOHprofiler_f25_sphere.json")

@@ -4,34 +4,25 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "base/remove_checksums.hpp"
 #include "study/analysis/analysis_support.hpp"
-#include "study/analysis/verdict.hpp"
 #include "study/compare/study_support.hpp"
 #include "study/journal/journal.hpp"
 
 namespace armwright {
 namespace {
 
-using testing::Contains;
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 // A trace counts the quality that a run keeps, not a value that it had once by luck.
 TEST(Trace, IsTheWorstFromThereOn) {
   CellOutcome cell;
-  cell.curve = {{10, 5, {}}, {20, 1, {}}, {30, 4, {}}, {40, 3, {}}};
   cell.trace = {{7, 5, {}}, {13, 2, {}}, {29, 4, {}}};
-  const auto list_values = [&](bool exact) {
-    std::vector<double> values;
-    for (const TracePoint& point : make_trace(cell, exact)) {
-      values.push_back(point.best_value);
-    }
-    return values;
-  };
-  EXPECT_THAT(list_values(false), ElementsAre(5, 4, 4, 3));
-  EXPECT_THAT(list_values(true), ElementsAre(5, 4, 4));
-  EXPECT_EQ(make_trace(cell, true)[1].cost, 13);
+  std::vector<double> values;
+  for (const TracePoint& point : make_trace(cell)) {
+    values.push_back(point.best_value);
+  }
+  EXPECT_THAT(values, ElementsAre(5, 4, 4));
+  EXPECT_EQ(make_trace(cell)[1].cost, 13);
 }
 
 TEST(ExactTimes, ComeFromTheTraceAndNotFromTheCheckpoints) {
@@ -45,16 +36,11 @@ TEST(ExactTimes, ComeFromTheTraceAndNotFromTheCheckpoints) {
       cells.push_back(cell);
     }
   }
-  ProblemResult problem = analyze_problem(plan, 0, cells);
-  EXPECT_TRUE(problem.exact_times);
+  const ProblemResult problem = analyze_problem(plan, 0, cells);
   EXPECT_EQ(problem.optimizers[0].running_times[0].target, 10);
   EXPECT_EQ(problem.optimizers[0].running_times[0].expected, 751);
   EXPECT_EQ(problem.optimizers[0].running_times[0].interval.lower, 701);
   EXPECT_EQ(problem.optimizers[0].running_times[0].interval.upper, 801);
-  cells[2].trace.reset();  // recorded by version 1.0: times of both optimizers are then alike
-  problem = analyze_problem(plan, 0, cells);
-  EXPECT_FALSE(problem.exact_times);
-  EXPECT_EQ(problem.optimizers[0].running_times[0].expected, 1000);
 }
 
 // Both tables give the expected running times that cocopp has computed from an export of the same
@@ -71,9 +57,9 @@ TEST(ExactTimes, InTheTablesAreThoseOfCocopp) {
     for (const auto& run : runs) {
       CellOutcome cell = make_value_cell(plan, 0, static_cast<int>(cells.size()) + 1, 0);
       cell.cases = run.at("evaluations");
-      cell.trace->clear();
+      cell.trace.clear();
       for (const auto& improvement : run.at("improvements")) {
-        cell.trace->push_back({improvement.at(0), improvement.at(1), {}});
+        cell.trace.push_back({improvement.at(0), improvement.at(1), {}});
       }
       cells.push_back(cell);
     }
@@ -125,7 +111,6 @@ value = 1.0
 )");
   const StudyResult result = study(plan, "study");
   const ProblemResult& problem = result.problems.front();
-  EXPECT_TRUE(problem.exact_times);
   EXPECT_EQ(problem.best_known, 0);
   int reached = 0;
   for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
@@ -144,21 +129,6 @@ value = 1.0
     }
   }
   EXPECT_GT(reached, 0);
-  // The first cells of version 1.0 have no trace: all times come from checkpoints.
-  const auto file = temporary_ / "study" / make_cell_path(plan, {0, 0, 1}) / "cell.json";
-  nlohmann::json cell = nlohmann::json::parse(read_file(file, 1 << 24));
-  ASSERT_EQ(cell.erase("trace"), 1u);
-  remove_checksums(temporary_ / "study");
-  std::ofstream(file) << cell.dump(1);
-  const StudyResult coarse = analyze_study(plan, temporary_ / "study");
-  EXPECT_TRUE(coarse.missing.empty());
-  EXPECT_FALSE(coarse.problems.front().exact_times);
-  for (std::size_t o = 0; o < plan.optimizers.size(); ++o) {
-    EXPECT_GE(coarse.problems.front().optimizers[o].target_times[0].expected,
-              problem.optimizers[o].target_times[0].expected);
-    EXPECT_THAT(problem.checkpoints,
-                Contains(coarse.problems.front().optimizers[o].target_times[0].trials[0].cost));
-  }
 }
 
 TEST_F(ExactTimesOfRuns, OfAnArmAreThoseOfItsIncumbents) {
@@ -172,7 +142,7 @@ TEST_F(ExactTimesOfRuns, OfAnArmAreThoseOfItsIncumbents) {
   const StudyPlan plan = make_study_plan(request);
   const StudyResult result = study(plan, "study");
   const CellOutcome& cell = result.cells.front();
-  const auto& trace = *cell.trace;
+  const auto& trace = cell.trace;
   ASSERT_GT(trace.size(), 2u);
   // Where a checkpoint and an incumbent coincide, both have the same value.
   for (const CurvePoint& point : cell.curve) {
@@ -183,7 +153,7 @@ TEST_F(ExactTimesOfRuns, OfAnArmAreThoseOfItsIncumbents) {
   const auto file = temporary_ / "study" / make_cell_path(plan, {0, 0, 1}) / "cell.json";
   const CellOutcome read = parse_cell(read_file(file, 1 << 24), file);
   EXPECT_EQ(to_json(read), read_file(file, 1 << 24));
-  EXPECT_EQ(read.trace->back().budget, trace.back().budget);
+  EXPECT_EQ(read.trace.back().budget, trace.back().budget);
 }
 
 }  // namespace

@@ -39,7 +39,6 @@ PairResult make_pair(std::size_t winner, std::size_t loser, bool is_significant)
 
 std::string describe(const StudyPlan& plan, ProblemResult problem) {
   problem.label = plan.problems.front().label;
-  problem.exact_times = true;
   problem.order = order_optimizers(problem.optimizers, true);
   StudyResult result;
   result.problems = {problem};
@@ -204,17 +203,6 @@ TEST(Verdict, CountsNoFailedOptimizerAndNoFailedCaseAsAViolation) {
   result.cells[3].end_reason = kNotEnded;
   EXPECT_EQ(analyze_problem(plan, 0, result.cells).optimizers[0].unmet, 2);
   EXPECT_EQ(analyze_problem(plan, 0, result.cells).optimizers[1].unmet, 0);
-}
-
-TEST(Verdict, SaysThatRunningTimesOfVersionOneAreCoarse) {
-  const StudyPlan plan = make_sphere_plan({"ga", "cmaes"}, 6);
-  StudyResult result = analyze_values(plan, {{1, 2, 3, 4, 5, 6}, {2, 3, 4, 5, 6, 7}});
-  EXPECT_THAT(describe_verdict(plan, result), Not(Contains(HasSubstr("checkpoints"))));
-  result.cells[3].trace.reset();
-  result.problems = {analyze_problem(plan, 0, result.cells)};
-  EXPECT_FALSE(result.problems.front().exact_times);
-  EXPECT_THAT(describe_verdict(plan, result),
-              Contains(HasSubstr("Running times on sphere are only as exact as the checkpoints")));
 }
 
 }  // namespace

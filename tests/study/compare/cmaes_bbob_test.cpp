@@ -25,9 +25,9 @@ constexpr const char* kPlan =
 
 // Returns the number of evaluations to 1e-8, infinity if the run did not get there.
 double count_to_target(const CellOutcome& cell) {
-  const auto hit = std::ranges::find_if(
-      cell.trace.value(), [](const CurvePoint& point) { return point.value <= 1e-8; });
-  return hit == cell.trace->end() ? kInfinity : static_cast<double>(hit->budget);
+  const auto hit =
+      std::ranges::find_if(cell.trace, [](const CurvePoint& point) { return point.value <= 1e-8; });
+  return hit == cell.trace.end() ? kInfinity : static_cast<double>(hit->budget);
 }
 
 // Returns the value that this share of the others does not exceed.

@@ -73,22 +73,6 @@ TEST(OptimizerLabels, AReferenceMayBeThePath) {
   EXPECT_EQ(plan.reference, "mine");
 }
 
-// The cells' folders and the recorded tables have these labels.
-TEST_F(StudyTest, AStudyOfVersion1KeepsThePathsOfPluginsAsLabels) {
-  StudyPlan old = make_plan({kMine});
-  old.optimizers[0].label = old.reference = kMine.name;
-  name_streams_by_labels(old);
-  { const StudyFolder folder(temporary_ / "study", old); }
-  StudyPlan now = make_plan({kMine, kTwin});
-  now.reference = "mine";
-  adopt_recorded(temporary_ / "study", now);
-  EXPECT_THAT(list_labels(now), ElementsAre(kMine.name, "mine"));
-  EXPECT_EQ(now.reference, kMine.name);
-  EXPECT_EQ(make_run_plan(now, {0, 0, 1}).seed, make_run_plan(old, {0, 0, 1}).seed);
-  const StudyFolder grown(temporary_ / "study", now);
-  EXPECT_THAT(grown.additions(), ElementsAre("optimizer mine"));
-}
-
 TEST_F(StudyTest, AnotherOrderOfPluginsKeepsTheirLabels) {
   { const StudyFolder folder(temporary_ / "study", make_plan({kMine, kTwin})); }
   StudyPlan now = make_plan({make_plugin("/c/mine.so", "mine"), kTwin, kMine});

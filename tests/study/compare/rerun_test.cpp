@@ -128,28 +128,6 @@ TEST_F(Rerun, OnAnyNumberOfThreadsIsIdentical) {
   EXPECT_THAT(comparison.files, ElementsAre("result.json", "cell.json"));
 }
 
-// Version 1.0 wrote no trace into cell.json.
-TEST_F(Rerun, ACellOfVersionOneIsIdentical) {
-  make_two("cmaes");
-  const auto file = recorded() / "cell.json";
-  const std::string text = read_file(file, 1 << 24);
-  nlohmann::json cell = nlohmann::json::parse(text);
-  ASSERT_EQ(cell.erase("trace"), 1u);
-  std::ofstream(file) << cell.dump(1) + "\n";
-  const CellComparison comparison = compare_cells(recorded(), now());
-  EXPECT_FALSE(comparison.difference);
-  EXPECT_THAT(comparison.files, ElementsAre("result.json", "cell.json"));
-  cell["clipped"] = 12345;
-  std::ofstream(file) << cell.dump(1) + "\n";
-  ASSERT_TRUE(compare_cells(recorded(), now()).difference);
-  EXPECT_EQ(compare_cells(recorded(), now()).difference->field, "clipped");
-  cell = nlohmann::json::parse(text);
-  cell["trace"][0][0] = 12345;
-  std::ofstream(file) << cell.dump(1) + "\n";
-  ASSERT_TRUE(compare_cells(recorded(), now()).difference);
-  EXPECT_EQ(compare_cells(recorded(), now()).difference->field, "trace.0.0");
-}
-
 TEST_F(Rerun, AnotherJournalIsFoundAtTheFirstDifferentEvaluation) {
   make_two("random");
   const auto other = temporary_ / "study" / make_cell_path(plan_, {0, 0, 1});

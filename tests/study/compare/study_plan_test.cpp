@@ -267,29 +267,10 @@ TEST(StudySelection, EveryRunHasNinePlacesUnlessTheFileSaysOtherwise) {
   EXPECT_EQ(list_selection(load_plan(folder, plain)), (std::vector{9, 5, 9}));
   EXPECT_EQ(list_selection(load_plan(folder, plain + "[selection]\nmost = 4\n")),
             (std::vector{9, 5, 4}));
-  // Files of version 1.0 state these two, and keep their meaning.
   EXPECT_EQ(list_selection(load_plan(folder, plain + "[selection]\nlast = 20\nbest = 3\n")),
             (std::vector{20, 3, 23}));
-}
-
-TEST(StudySelection, IsRecordedAndAPlanOfVersionOneKeepsItsRule) {
-  const TemporaryFolder folder;
-  StudyPlan plan = load_plan(folder, kPlainStudy);
-  EXPECT_EQ(list_selection(load_plan(folder, to_toml(plan))), (std::vector{9, 5, 9}));
-  plan.selection = {.last = 5, .best = 5, .most = 0};  // the recorded plan then has no "most"
-  const std::string old = to_toml(plan);
-  EXPECT_THAT(old, testing::Not(testing::HasSubstr("most")));
-  EXPECT_EQ(list_selection(load_plan(folder, old)), (std::vector{5, 5, 0}));
-  const RunPlan run = make_run_plan(load_plan(folder, old), {});
-  EXPECT_THAT(to_json(run), testing::Not(testing::HasSubstr("\"most\"")));
-  // Growing the old study from the plain file keeps the rule as well.
-  const auto study = folder / "study";
-  std::filesystem::create_directories(study);
-  std::ofstream(study / "study.toml") << old;
-  StudyPlan grown = load_plan(folder, kPlainStudy);
-  adopt_recorded(study, grown);
-  EXPECT_EQ(list_selection(grown), (std::vector{5, 5, 0}));
-  EXPECT_EQ(to_toml(grown), old);
+  EXPECT_EQ(list_selection(load_plan(folder, to_toml(load_plan(folder, plain)))),
+            (std::vector{9, 5, 9}));
 }
 
 TEST(StudySelection, IsTheSameForEveryOptimizerWhereAFrontIsJudged) {

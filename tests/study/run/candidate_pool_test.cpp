@@ -84,12 +84,6 @@ TEST(CandidatePoolTest, EveryOptimizerHasTheSameNumberOfPlaces) {
   EXPECT_THAT(select_with(nine, 12), ElementsAre(105, 0, 104, 0, 103, 0, 102, 0, 101));
 }
 
-TEST(CandidatePoolTest, VersionOneJudgedMoreOfAnOptimizerThatRecommends) {
-  const Selection old{.last = 5, .best = 5, .most = 0};
-  EXPECT_EQ(select_with(old, 0).size(), 5u);
-  EXPECT_EQ(select_with(old, 12).size(), 8u);
-}
-
 // The pool keeps few of a long run's candidates. They must be the same as if it kept all.
 TEST(RememberedCandidatesTest, AreThoseThatAllTogetherWouldHaveGiven) {
   RandomStream random("test/remembered-candidates", 1);

@@ -125,26 +125,6 @@ TEST_F(LateRecommendation, CountsUpToAHundredTimes) {
   EXPECT_DOUBLE_EQ(result->judged[0].candidate.x[0], 0.99);
 }
 
-TEST_F(LateRecommendation, DoesNotCountInARunThatVersionOneBegan) {
-  body_ = [](Evaluator& evaluator) {
-    spend(evaluator);
-    evaluator.recommend(std::vector<double>{0, 0});
-  };
-  // As version 1.0 left it: no rule for the places in the manifest.
-  run(make_plan(), "old");
-  const auto manifest = temporary_ / "old" / "manifest.json";
-  json content = json::parse(read_file(manifest, 1 << 20));
-  ASSERT_EQ(content["configuration"]["run"]["selection"].erase("most"), 1u);
-  remove_checksums(temporary_ / "old");
-  write_file_atomically(manifest, content.dump());
-  std::filesystem::remove(temporary_ / "old" / "journal");
-  std::filesystem::remove(temporary_ / "old" / "result.json");
-  const auto result = run(make_plan(), "old");
-  ASSERT_TRUE(result);
-  EXPECT_EQ(count_recommended(*result), 0u);
-  EXPECT_FALSE(read("old").late.has_value());
-}
-
 TEST_F(LateRecommendation, WaitsForTheNextStartIfTheUserStops) {
   body_ = [](Evaluator& evaluator) {
     spend(evaluator);

@@ -180,19 +180,6 @@ TEST_F(RunTest, ARefusalNamesTheCommandAndEachDifferenceOnce) {
             testing::Not(HasSubstr("simd")), testing::Not(HasSubstr("problem.run.budget"))));
 }
 
-// Version 1.0 recorded functions without an instance.
-TEST_F(RunTest, ARunOfAPlainFunctionIsRefusedWithWhatToDo) {
-  const auto make_plan = [](const std::vector<std::string>& settings) {
-    RunPlan plan = make_small_plan();
-    plan.problem = load_problem("sphere", settings);
-    return plan;
-  };
-  run(make_plan({"function.instance=0"}), "a");
-  EXPECT_THAT(usage_error_of([&] { run(make_plan({}), "a"); }),
-              HasSubstr("to resume this run, pass --set function.instance=0"));
-  run(make_plan({"function.instance=0"}), "a");
-}
-
 // Results differ in the last bits between SIMD levels, so a run keeps the level it began with.
 TEST_F(RunTest, AnotherSimdLevelIsRefusedWithWhatToDo) {
   const auto make_plan = [](const std::string& simd) {

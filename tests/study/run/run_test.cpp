@@ -175,48 +175,12 @@ TEST_F(RunTest, TheWinnersMotionIsThatOfItsTestCases) {
   EXPECT_THAT(read_result("a"), testing::Not(HasSubstr("total_force_n")));
 }
 
-TEST_F(RunTest, CellsAndRunsOfVersion1AreNotMeasured) {
+TEST_F(RunTest, CellsAreNotMeasured) {
   StopSignal stop;
   const auto cell = execute_run(
       {make_small_plan(), temporary_ / "cell", 2, {}, DerivedFiles::winner}, stop, observer_);
   EXPECT_FALSE(cell->test_motion);
   EXPECT_THAT(read_result("cell"), testing::Not(HasSubstr("motion")));
-  RunPlan old = make_small_plan();
-  old.selection.most = 0;
-  EXPECT_FALSE(run(old, "old")->test_motion);
-  EXPECT_THAT(read_result("old"), testing::Not(HasSubstr("motion")));
-}
-
-// As those of --robot, whose problem has got the setting since.
-TEST_F(RunTest, ARunOfVersion1KeepsControllersThatStartEmpty) {
-  RunPlan old = make_small_plan("random", 4);
-  old.selection.most = 0;
-  run(old, "old");
-  const LoadedProblem now =
-      load_problem("q1-complex", std::vector<std::string>{"control.start=gravity"});
-  EXPECT_THAT(find_old_settings(temporary_ / "old", now, {}),
-              testing::ElementsAre("control.start=empty"));
-  EXPECT_THAT(
-      find_old_settings(temporary_ / "old", now, std::vector<std::string>{"control.start=gravity"}),
-      testing::IsEmpty());
-}
-
-// Its workspace, speed and start are not those that are proposed now.
-TEST_F(RunTest, ARunOfVersion1KeepsWhatWasProposed) {
-  const std::vector<std::string> asked = {"robot.urdf=\"planar2\"", "sets.validation_cases=2",
-                                          "sets.test_cases=2", "schedule.cases=1",
-                                          "training.failure_rule=thesis"};
-  std::vector<std::string> then = asked;
-  then.insert(then.end(), kProposedByVersion1.begin(), kProposedByVersion1.end());
-  RunPlan old = make_small_plan("random", 4);
-  old.problem = load_problem("robot", then);
-  old.selection.most = 0;
-  run(old, "old");
-  const LoadedProblem now = load_problem("robot", asked);
-  EXPECT_NE(now.resolved_json, old.problem.resolved_json);
-  std::vector<std::string> kept = asked;
-  std::ranges::move(find_old_settings(temporary_ / "old", now, {}), std::back_inserter(kept));
-  EXPECT_EQ(load_problem("robot", kept).resolved_json, old.problem.resolved_json);
 }
 
 TEST_F(RunTest, ResultsDoNotDependOnTheNumberOfThreads) {

@@ -88,7 +88,6 @@ export interface StudyProblem {
   optimum: number | null; // null if it is unknown
   best_known: number | null; // the optimum if it is known
   start: number | null;
-  exact_times: boolean; // running times come from every incumbent, not only from the checkpoints
   checkpoints: number[];
   targets: number[];
   fixed_targets: string[]; // in words

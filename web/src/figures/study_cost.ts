@@ -9,7 +9,6 @@ import { format_number } from '../numbers';
 import {
   convert,
   describe_size,
-  describe_times,
   describe_value,
   end_title,
   get_curve_name,
@@ -131,7 +130,6 @@ export function make_cost_quality(scope: Scope): Figure | null {
     caption:
       'Each point is an optimizer. One axis has the average number of simulated cases that it needs to reach the chosen target, with a new start after each run that fails. The other axis has the median value at the end of the budget. Points towards the lower left are better. ' +
       'An optimizer that reached the target in no run is in the strip at the right. ' +
-      describe_times(scope) +
       'Targets lie between the start and the best known value, and depend on the optimizers that take part. ' +
       'Neither axis shows how certain a difference is; the figure of the pairs does. ' +
       (scope.shown.length > kMostLabels ? 'The best ' + kMostLabels + ' are named. ' : '') +

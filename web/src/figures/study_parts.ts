@@ -140,13 +140,6 @@ export function describe_size(scope: Scope): string {
         ' not ended. The numbers are those of the runs that have ended, so optimizers may be compared on different replicates.';
 }
 
-// Says how exact the running times are.
-export function describe_times(scope: Scope): string {
-  return scope.problems.every((problem) => problem.exact_times)
-    ? ''
-    : 'Running times are as coarse as the checkpoints, because some runs were recorded by version 1.0. ';
-}
-
 export function end_title(scope: Scope, title: string): string {
   return scope.problems.length === 1 && scope.data.problems.length > 1 ? title + ': ' + shorten(scope.problems[0].label) : title;
 }

@@ -11,7 +11,6 @@ import { format_number } from '../numbers';
 import {
   convert_all,
   describe_size,
-  describe_times,
   describe_value,
   end_title,
   get_curve_name,
@@ -227,7 +226,6 @@ export function make_runtime_ecdf(scope: Scope): Figure {
     caption:
       'The share of all pairs of a run and a target that are reached, against the number of simulated training cases. Curves that are higher and further left are better. ' +
       kTargets +
-      describe_times(scope) +
       describe_size(scope) +
       kFirstOnes(scope.shown.length),
     height: 400,
@@ -297,7 +295,6 @@ export function make_pooled_ecdf(scope: Scope): Figure | null {
       kTargets +
       'Each problem has its own targets, and their number is its weight. ' +
       (problems.length < scope.problems.length ? 'Problems with missing runs are left out. ' : '') +
-      describe_times(scope) +
       describe_size({ ...scope, problems }) +
       kFirstOnes(scope.shown.length),
     width: 'full',
