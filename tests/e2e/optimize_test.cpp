@@ -109,6 +109,12 @@ TEST_F(CliOptimize, ARunOfVersion1IsRefusedInOneSentenceAndStaysAsItIs) {
   EXPECT_EQ(outcome.exit_code, 4);
   EXPECT_THAT(outcome.err, HasSubstr("old/manifest.json: version 1.0 of armwright began this run"));
   EXPECT_TRUE(read_text(folder / "journal") == journal);
+  for (const std::vector<std::string>& reading :
+       {std::vector<std::string>{"show", "old"}, {"report", "old"}, {"doctor", "old"}}) {
+    const Outcome read = run(reading);
+    EXPECT_NE(read.exit_code, 0) << reading[0];
+    EXPECT_THAT(read.out + read.err, HasSubstr("version 1.0 of armwright began this run"));
+  }
 }
 
 TEST_F(CliOptimize, RefusesToGoOnWithAnotherConfiguration) {

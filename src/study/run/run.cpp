@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/file.hpp"
 #include "base/folder_checksums.hpp"
 #include "base/text.hpp"
 #include "problems/identification/identification_problem.hpp"
@@ -304,10 +306,16 @@ std::optional<RunResult> execute_run(const RunRequest& request, StopSignal& stop
 
 RunResult load_result(const std::filesystem::path& folder) {
   const auto file = folder / "result.json";
-  if (!path_exists(folder / "manifest.json")) {
+  const auto manifest = folder / "manifest.json";
+  if (!path_exists(manifest)) {
     throw Error(
         ErrorKind::usage,
         fmt::format("{}: is not the folder of a run (it has no manifest.json)", folder.string()));
+  }
+  const auto recorded =
+      nlohmann::json::parse(read_file(manifest, kManifestLimit_bytes), nullptr, false);
+  if (is_of_version_1(recorded)) {
+    throw Error(ErrorKind::bad_data, fmt::format("{}: {}", manifest.string(), kIsOfVersion1));
   }
   if (!path_exists(file)) {
     throw Error(

@@ -100,10 +100,8 @@ json read_manifest(const std::filesystem::path& file) {
                       "--new",
                       manifest.at("format").dump(), kManifestFormat));
     }
-    if (!manifest.at("configuration").at("run").at("selection").contains("most")) {
-      throw std::runtime_error(
-          "version 1.0 of armwright began this run, and this version reads none of its runs; use "
-          "version 1.0 for it, or choose another folder with --out or --new");
+    if (is_of_version_1(manifest)) {
+      throw std::runtime_error(kIsOfVersion1);
     }
     manifest.at("build").get<std::map<std::string, std::string>>();
     manifest["has_checksums"] = manifest.value("has_checksums", false);
@@ -324,6 +322,11 @@ const std::vector<std::string>& derived_file_names() {
 
 bool is_derived_file(const std::string& name) {
   return std::ranges::count(derived_file_names(), name) > 0 || name.starts_with(kWinnerFiles);
+}
+
+bool is_of_version_1(const nlohmann::json& manifest) {
+  const json selection = find(manifest, "/configuration/run/selection");
+  return selection.is_object() && !selection.contains("most");
 }
 
 void cover_run(const Folder& folder, bool has_ended) {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -85,6 +86,12 @@ inline constexpr const char* kCheckFile = "check.json";
 inline constexpr std::size_t kIdentificationLimit_bytes = std::size_t{256} << 20;
 // Returns whether a file, named relative to the run's folder, is derived from the journal.
 bool is_derived_file(const std::string& name);
+
+// Returns whether version 1.0 began the run with this manifest.
+bool is_of_version_1(const nlohmann::json& manifest);
+inline constexpr const char* kIsOfVersion1 =
+    "version 1.0 of armwright began this run, and this version reads none of its runs; use version "
+    "1.0 for it, or begin a new run in another folder (--out or --new)";
 
 // Covers all files of a run that are complete: the manifest, the derived files and, if the run has
 // ended, the journal. Throws Error{io}.

@@ -96,6 +96,9 @@ class RunSurveyor {
       if (manifest.at("format") != kManifestFormat) {
         return "its format is not the one that this version reads";
       }
+      if (is_of_version_1(manifest)) {
+        return kIsOfVersion1;
+      }
       for (const char* key : {"problem", "run"}) {
         if (!manifest.at("configuration").at(key).is_object()) {
           return fmt::format("its configuration has no {}", key);
