@@ -102,8 +102,8 @@ TEST_F(Import, RefusesJsonThatIsNotAnExport) {
   std::filesystem::remove(folder_ / "runs.json");
   expect_refused({}, ErrorKind::usage, "holds no export as csv, json or ioh");
   std::ofstream(folder_ / "IOHprofiler_f1_p.json")
-      << R"({"function_name":"p","algorithm":{"name":"l"},"experiment_attributes":[{"variables":"[\"a\"]"}],
-            "scenarios":[{"runs":[{"instance":1,"best":{"evals":1,"y":2,"x":[1,2]}}]}]})";
+      << R"({"function_name":"p","algorithm":{"name":"l"},"experiment_attributes":[],
+            "scenarios":[{"problem":"p","variables":["a"],"runs":[{"instance":1,"best":{"evals":1,"y":2,"x":[1,2]}}]}]})";
   expect_refused({}, ErrorKind::bad_data, "a point has 2 values for 1 variables");
 }
 
