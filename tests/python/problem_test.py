@@ -90,7 +90,7 @@ class ProblemTest(FolderTest):
         self.assertTrue(np.allclose(alone.case_errors.mean(axis=1), alone.values))
 
     def test_agrees_with_a_run_of_the_programs(self):
-        self.run_program(*"optimize q1-complex --engine articulated --optimizer random --schedule fixed:2 --budget 60 --quiet".split())
+        self.run_program(*"optimize q1-complex --engine articulated --optimizer random --schedule fixed:2 --budget 60 --quiet".split(), expect=3)
         history = armwright.load_run("results/q1-complex-random-seed1-engine_articulated-fixed2").history
         mine = self.problem.evaluate(history.x, cases=2)
         self.assertEqual(history.objectives.data.tobytes(), mine.objectives.tobytes())

@@ -120,7 +120,7 @@ class RunTest(FolderTest):
         self.assertRegex(str(run.folder), "^results/q1-complex-ga-seed2-[0-9a-f]{8}$")
         self.assertEqual(run.manifest["configuration"]["run"]["options"]["population"], 7)
         self.run_program(*"optimize q1-complex --engine articulated --optimizer ga --seed 2 --budget 70 --opt population=7".split(),
-                         *"--opt mutation_probability=0.25 --schedule fresh:2 --out its --quiet".split())
+                         *"--opt mutation_probability=0.25 --schedule fresh:2 --out its --quiet".split(), expect=3)
         self.assertEqual(read_bytes(run.folder, "result.json"), read_bytes("its", "result.json"))
         history = run.history
         self.assertEqual(history.generation.tolist(), [1] * 7 + [2] * 7 + [3] * 7 + [4] * 7 + [5] * 7)
@@ -153,9 +153,9 @@ class RunTest(FolderTest):
         alone = armwright.optimize("q1-complex", Steps, seed=3, budget=100, set=FAST, options={"batch": 6}, out="alone", jobs=1)
         self.assertEqual(read_bytes("mine", "result.json"), read_bytes("alone", "result.json"))
         self.assertEqual(run.manifest["configuration"]["run"]["options"], {"batch": 6, "spread": 0.2})
-        self.assertEqual(json.loads(self.run_program("show", "mine", "--json")), run.to_dict())
+        self.assertEqual(json.loads(self.run_program("show", "mine", "--json", expect=3)), run.to_dict())
         self.run_program("export", "mine", "--format", "csv", "--out", "csv")
-        self.assertIn("python:steps", self.run_program("show", "mine"))
+        self.assertIn("python:steps", self.run_program("show", "mine", expect=3))
         with self.expect_error(armwright.UsageError, "option 'batch' is '0'; it must be an integer between 1 and 100"):
             armwright.optimize("q1-complex", Steps, options={"batch": 0})
 

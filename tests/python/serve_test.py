@@ -55,7 +55,7 @@ class ServeTest(FolderTest):
 
     def test_asks_for_the_same_points(self):
         self.run_program("optimize", "q1-complex", "--optimizer", self.plugin,
-                         *"--engine articulated --budget 60 --opt batch=7 --seed 4 --out its --quiet".split())
+                         *"--engine articulated --budget 60 --opt batch=7 --seed 4 --out its --quiet".split(), expect=3)
         its = armwright.load_run("its").history
         mine = armwright.optimize("q1-complex", Steps, set=FAST, budget=60, options={"batch": 7}, seed=4, out="mine").history
         self.assertEqual(its.x.tobytes(), mine.x.tobytes())
@@ -71,7 +71,7 @@ class ServeTest(FolderTest):
         self.assertEqual(its.history.generation.tolist(), [1, 1, 2, 2])
         self.assertTrue(any(one.get("recommended") for one in its.candidates))
         # Without faults it sees the end of the budget, and ends.
-        self.run_program("optimize", "sphere", "--optimizer", self.plugin, "--budget", "3", "--out", "short", "--quiet")
+        self.run_program("optimize", "sphere", "--optimizer", self.plugin, "--budget", "3", "--out", "short", "--quiet", expect=3)
         self.assertEqual(armwright.load_run("short").end_reason, "budget")
 
 
