@@ -376,7 +376,10 @@ std::string to_json(const RunResult& result) {
     j["winner"] = {{"candidate", *result.winner},
                    {"test", evaluation_to_json(result.test)},
                    {"test_summary", summary_to_json(result.test_summary)}};
-    j["winner"]["faults"] = list_faults(result);
+    const std::vector<std::string> faults = list_faults(result);
+    if (result.start || !faults.empty()) {  // a comparison's cell is not held against the start
+      j["winner"]["faults"] = faults;
+    }
     if (result.start) {
       j["start"] = {{"test", evaluation_to_json(result.start->test)},
                     {"test_summary", summary_to_json(summarize_start(result))},
