@@ -7,9 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/file.hpp"
-#include "base/folder.hpp"
 #include "base/hash.hpp"
-#include "base/json_text.hpp"
 #include "base/read_limit.hpp"
 #include "base/text.hpp"
 #include "base/toml_text.hpp"
@@ -26,7 +24,6 @@
 #include "study/compare/study_methods.hpp"
 #include "study/compare/study_plan.hpp"
 #include "study/compare/study_reader.hpp"
-#include "study/run/run_folder.hpp"
 
 namespace armwright {
 namespace {

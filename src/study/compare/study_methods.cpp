@@ -11,7 +11,6 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "problems/config/problem_loader.hpp"
-#include "study/run/run_folder.hpp"
 
 namespace armwright {
 namespace {
