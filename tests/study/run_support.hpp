@@ -18,26 +18,6 @@
 
 namespace armwright {
 
-// The settings with which the problem robot gives the arm planar2 what version 1.0 gave it, with a
-// workspace and a speed that are not proposed any more.
-inline const std::vector<std::string> kProposedByVersion1 = {
-    "robot.dynamics=false",
-    "robot.plant=\"\"",
-    "robot.repair=false",
-    "control.start=empty",
-    "task.solver=scalar",
-    "control.period_s=0.01",
-    "physics.substeps=10",
-    "workspace.centre_m=[0.4, 0, 1.2]",
-    "workspace.radius_m=0.1",
-    "workspace.shortest_move_m=0.01",
-    "workspace.normal=[0, 1, 0]",
-    "task.home=[0.3, 0.9]",
-    "task.distance_limit_m=0.2",
-    "task.speed_m_per_s=0.2",
-    "variables.start_bandwidth_rad_per_s=0",
-    "training.failure_rule=thesis"};
-
 class SilentObserver : public RunObserver {
  public:
   void on_progress(const Progress& progress) override {

@@ -128,6 +128,9 @@ void refuse_repeated(std::string_view what, std::span<const std::string> labels)
 // Loads the problem on the SIMD level on which the plan was made, because "auto" may choose another
 // one on this machine. Returns false if no level gives the recorded configuration.
 bool load_as_recorded(const NamedProblem& named, StudyProblem& problem) {
+  if (problem.loaded.tracking() == nullptr) {
+    return false;
+  }
   for (const std::string& level : supported_simd_names()) {
     std::vector<std::string> settings = problem.settings;
     settings.push_back("physics.simd=" + level);
@@ -179,7 +182,7 @@ void load_problems(const RawPlan& raw, bool reads_programs, StudyPlan& plan) {
     set_schedule(named.schedule ? named.schedule : raw.schedule, problem);
     std::string hash = calc_configuration_hash(problem.loaded);
     if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash &&
-        problem.loaded.tracking() != nullptr && load_as_recorded(named, problem)) {
+        load_as_recorded(named, problem)) {
       hash = named.configuration_sha256;
     }
     if (!named.configuration_sha256.empty() && named.configuration_sha256 != hash) {
@@ -395,7 +398,7 @@ void keep_simd_levels(const std::filesystem::path& recorded, StudyPlan& plan) {
   const RawPlan raw = read_study_file(recorded, ignored);
   for (StudyProblem& problem : plan.problems) {
     const auto found = std::ranges::find(raw.problems, problem.label, &NamedProblem::label);
-    if (found != raw.problems.end() && problem.loaded.tracking() != nullptr &&
+    if (found != raw.problems.end() &&
         found->configuration_sha256 != calc_configuration_hash(problem.loaded)) {
       NamedProblem named = *found;
       named.name = problem.name;

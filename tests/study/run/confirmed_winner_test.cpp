@@ -9,7 +9,7 @@
 namespace armwright {
 namespace {
 
-// Proposes 0, 1, ... and ends.
+// Proposes the whole numbers below `points`, the largest first, and ends.
 class Counts : public Optimizer {
  public:
   explicit Counts(int points) : points_(points) {}
@@ -23,8 +23,8 @@ class Counts : public Optimizer {
   int points_;
 };
 
-// Of the cases of the validation set, a design of size 0 fails case 25, and one of size 1 case 95.
-// All of them pass the first ten. Smaller designs have smaller errors.
+// Of the cases of the validation set, design 0 fails case 25, and design 1 fails case 95.
+// All of them pass the first ten. A smaller number has a smaller error.
 class ConfirmedWinner : public RunTest {
  protected:
   static RunPlan make_plan(int points, double failure_error = 10) {
